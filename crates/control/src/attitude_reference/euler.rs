@@ -1,0 +1,99 @@
+//! Roll and pitch reference from the thrust vector, as the article prints it.
+//!
+//!   phi_ref   = arcsin((f1 sin psi - f2 cos psi)/|F|)                    (1)
+//!   theta_ref = arctan((f1 cos psi + f2 sin psi)/(f3 + g))               (2)
+//!   T = m F . (R e_z)                                                    (3)
+//!
+//! with F = f + g e_z. The arctangent of (2) takes the wrong branch where F points downwards: the
+//! thrust axis comes out mirrored. `pitch = "atan2"` repairs the branch; the Euler singularity at 90
+//! deg stays. Both make the reference as a rotation; the angles are read from it again where a law
+//! works on angles.
+//!
+//! Source: the article, attitude computation. Valid for F upwards (`arctan`) or |theta| < 90 deg.
+
+use super::{RateMemory, Rates, projected_thrust};
+use crate::controller::Controller;
+use crate::math::{Euler, Rotation};
+use crate::real::Real;
+use crate::signals::{Attitude, Measurement, Model, Thrust};
+use crate::{choice, options, record};
+
+record! {
+    /// Numbers of the Euler-angle reference.
+    pub struct Gains {
+        /// Bound on the magnitude of thrust (N) and rates (rad/s).
+        limit: T [1] = 1e6, in 0.0 => 1e6;
+    }
+}
+
+choice! {
+    /// The inverse tangent in the pitch reference.
+    pub enum Pitch {
+        /// Arctangent of the quotient, as printed: wrong where F points downwards.
+        "arctan" => Arctan,
+        /// The angle of the point, right in all quadrants.
+        "atan2" => Atan2,
+    }
+}
+
+options! {
+    /// Choices of the Euler-angle reference.
+    pub struct Options {
+        /// The inverse tangent in the pitch reference.
+        pitch: Pitch;
+        /// Where the angular velocity of the reference comes from.
+        rates: Rates;
+    }
+}
+
+record! {
+    /// Euler-angle reference.
+    pub struct EulerAngles {
+        /// Numbers.
+        gains: Gains<T> [];
+        /// What the law believes of the vehicle.
+        model: Model<T> [];
+        /// The previous reference.
+        memory: RateMemory<T> [];
+        structure {
+            /// Choices.
+            options: Options;
+        }
+    }
+}
+
+impl<T: Real> EulerAngles<T> {
+    /// The law at rest.
+    pub fn new(gains: Gains<T>, options: Options, model: &Model<T>) -> Self {
+        Self { gains, options, model: *model, memory: RateMemory::default() }
+    }
+}
+
+impl<T: Real> Controller<T> for EulerAngles<T> {
+    type Reference = Thrust<T>;
+    type Command = Attitude<T>;
+
+    #[inline(always)]
+    fn update(&mut self, measurement: &Measurement<T>, thrust: &Thrust<T>, dt: T) -> Attitude<T> {
+        let f = thrust.force;
+        let (sin, cos) = thrust.yaw.sin_cos();
+        let roll = ((f.x * sin - f.y * cos) / f.norm()).asin(); // (1)
+        let forward = f.x * cos + f.y * sin;
+        let pitch = match self.options.pitch {
+            Pitch::Arctan => (forward * T::one().with_sign(f.z)).atan2(f.z.abs()), // (2)
+            Pitch::Atan2 => forward.atan2(f.z),
+        };
+        let rotation = Rotation::from_euler(Euler { roll, pitch, yaw: thrust.yaw });
+        let (rate, acceleration) = self.memory.update(self.options.rates, rotation, thrust, dt);
+        let thrust = projected_thrust(thrust, measurement, &self.model); // (3)
+        Attitude { rotation, rate, acceleration, thrust }
+    }
+
+    fn reset(&mut self, _: &Measurement<T>) {
+        self.memory = RateMemory::default();
+    }
+
+    fn limit(&self) -> T {
+        self.gains.limit
+    }
+}

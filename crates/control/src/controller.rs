@@ -1,0 +1,288 @@
+//! What a law is, and what keeps it total.
+
+use crate::math::{Vec3, World};
+use crate::real::{Mask, Real};
+use crate::record::{Meta, Path, Record, RecordExt, Visitor, VisitorMut, blend, clamp};
+use crate::signals::{Applied, Measurement};
+
+/// A record that keeps its own type when combined with others of its kind.
+pub trait Plain<T: Real>: Record<T, With<T> = Self> {}
+impl<T: Real, R: Record<T, With<T> = R>> Plain<T> for R {}
+
+/// Measurement and reference in, command out, once per `dt` seconds. No heap, no clock, no I/O.
+pub trait Controller<T: Real>: Plain<T> {
+    /// What the law follows.
+    type Reference: Plain<T>;
+    /// What it asks of the next level.
+    type Command: Plain<T>;
+    /// The command at this tick; `dt` is the time to the next one, in s.
+    fn update(
+        &mut self,
+        measurement: &Measurement<T>,
+        reference: &Self::Reference,
+        dt: T,
+    ) -> Self::Command;
+    /// Forgets the past, as if the flight began with this measurement.
+    fn reset(&mut self, measurement: &Measurement<T>);
+    /// Bound on the magnitude of every number in the command (SI).
+    fn limit(&self) -> T;
+}
+
+/// Estimates the acceleration that the model does not explain.
+pub trait Observer<T: Real>: Plain<T> {
+    /// The estimate, m/s^2.
+    fn estimate(&self) -> Vec3<T, World>;
+    /// Takes the measurement at the start of a tick.
+    fn correct(&mut self, measurement: &Measurement<T>, dt: T);
+    /// Moves on over the interval just commanded, after actuation.
+    fn advance(&mut self, applied: &Applied<T>, dt: T);
+    /// Forgets the past, as if the flight began with this measurement.
+    fn reset(&mut self, measurement: &Measurement<T>);
+    /// Bound on the magnitude of each component of the estimate, m/s^2.
+    fn limit(&self) -> T;
+}
+
+/// Makes a law total: whatever comes in, a finite command within the limit goes out.
+///
+/// Non-finite input, state or output gives the last good command and raises the flag; the state
+/// from before a bad input is kept, and what of it is not finite is reset.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Guarded<T, Law, Command> {
+    /// The law inside.
+    pub law: Law,
+    last: Command,
+    /// 1 where the last tick's command was held, else 0.
+    pub flag: T,
+}
+
+impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
+    /// Guards the law; `command` is held until the first good one.
+    pub fn new(law: L, command: L::Command) -> Self {
+        Self { law, last: command, flag: T::zero() }
+    }
+
+    /// [`Controller::update`], total.
+    #[inline(always)]
+    pub fn update(
+        &mut self,
+        measurement: &Measurement<T>,
+        reference: &L::Reference,
+        dt: T,
+    ) -> L::Command {
+        let before = self.law;
+        let command = self.law.update(measurement, reference, dt);
+        let input = measurement.finite() & reference.finite() & good_step(dt);
+        let good = input & command.finite() & self.law.finite();
+        self.flag = T::zero();
+        let mut granted = clamp(&command, self.law.limit());
+        // Both branches give the same where all is well; the mending is skipped for speed only.
+        if !good.all() {
+            self.flag = T::select(good, T::zero(), T::one());
+            self.law = blend(input, &self.law, &before);
+            let mut fresh = self.law;
+            fresh.reset(&mended(measurement, &Measurement::default()));
+            self.law = mended(&self.law, &fresh);
+            granted = blend(good, &granted, &self.last);
+        }
+        self.last = granted;
+        granted
+    }
+
+    /// [`Controller::reset`].
+    pub fn reset(&mut self, measurement: &Measurement<T>) {
+        self.law.reset(&mended(measurement, &Measurement::default()));
+        self.flag = T::zero();
+    }
+}
+
+/// Makes an observer total, as [`Guarded`] does for a law.
+#[derive(Clone, Copy, Debug)]
+pub struct GuardedObserver<T, Law> {
+    /// The observer inside.
+    pub law: Law,
+    last: Measurement<T>,
+    /// 1 where the last tick was ignored or mended, else 0.
+    pub flag: T,
+}
+
+impl<T: Real, L: Default> Default for GuardedObserver<T, L> {
+    fn default() -> Self {
+        Self { law: L::default(), last: Measurement::default(), flag: T::zero() }
+    }
+}
+
+impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
+    /// Guards the observer.
+    pub fn new(law: O) -> Self {
+        Self { law, last: Measurement::default(), flag: T::zero() }
+    }
+
+    /// [`Observer::estimate`], finite and within the limit.
+    #[inline(always)]
+    pub fn estimate(&self) -> Vec3<T, World> {
+        let limit = self.law.limit();
+        self.law.estimate().map(|x| x.clamp(-limit, limit))
+    }
+
+    /// [`Observer::correct`], total.
+    #[inline(always)]
+    pub fn correct(&mut self, measurement: &Measurement<T>, dt: T) {
+        self.flag = T::zero();
+        let before = self.law;
+        self.law.correct(measurement, dt);
+        let input = measurement.finite() & good_step(dt);
+        if input.all() {
+            self.last = *measurement;
+        } else {
+            self.last = blend(input, measurement, &self.last);
+        }
+        self.mend(input, &before);
+    }
+
+    /// [`Observer::advance`], total.
+    #[inline(always)]
+    pub fn advance(&mut self, applied: &Applied<T>, dt: T) {
+        let before = self.law;
+        self.law.advance(applied, dt);
+        self.mend(applied.finite() & good_step(dt), &before);
+    }
+
+    /// [`Observer::reset`].
+    pub fn reset(&mut self, measurement: &Measurement<T>) {
+        self.last = mended(measurement, &Measurement::default());
+        self.law.reset(&self.last);
+        self.flag = T::zero();
+    }
+
+    #[inline(always)]
+    fn mend(&mut self, input: T::Mask, before: &O) {
+        let good = input & self.law.finite();
+        if !good.all() {
+            self.flag = T::select(good, self.flag, T::one());
+            self.law = blend(input, &self.law, before);
+            let mut fresh = self.law;
+            fresh.reset(&self.last);
+            self.law = mended(&self.law, &fresh);
+        }
+    }
+}
+
+/// Whether the step is a time that can pass.
+#[inline(always)]
+fn good_step<T: Real>(dt: T) -> T::Mask {
+    T::zero().lt(dt) & dt.is_finite()
+}
+
+/// Number by number: the record's own where finite, else that of `spare`.
+#[inline(always)]
+fn mended<T: Real, R: Plain<T>>(record: &R, spare: &R) -> R {
+    R::zip([record, spare], &mut |[x, y]| T::select(x.is_finite(), x, y))
+}
+
+impl<T: Real, L: Record<T>, C: Record<T>> Record<T> for Guarded<T, L, C> {
+    type With<U: Real> = Guarded<U, L::With<U>, C::With<U>>;
+    #[inline(always)]
+    fn visit(&self, path: &Path<'_>, meta: &Meta, v: &mut impl Visitor<T>) {
+        self.law.visit(path, meta, v);
+        self.last.visit(&path.join("held"), meta, v);
+        v.number(&path.join("flag"), &FLAG, self.flag);
+    }
+    #[inline(always)]
+    fn visit_mut(&mut self, path: &Path<'_>, meta: &Meta, v: &mut impl VisitorMut<T>) {
+        self.law.visit_mut(path, meta, v);
+        self.last.visit_mut(&path.join("held"), meta, v);
+        v.number(&path.join("flag"), &FLAG, &mut self.flag);
+    }
+    #[inline(always)]
+    fn zip<const M: usize, U: Real>(
+        rows: [&Self; M],
+        f: &mut impl FnMut([T; M]) -> U,
+    ) -> Self::With<U> {
+        Guarded {
+            law: L::zip(rows.map(|row| &row.law), f),
+            last: C::zip(rows.map(|row| &row.last), f),
+            flag: f(rows.map(|row| row.flag)),
+        }
+    }
+}
+
+impl<T: Real, L: Record<T>> Record<T> for GuardedObserver<T, L> {
+    type With<U: Real> = GuardedObserver<U, L::With<U>>;
+    #[inline(always)]
+    fn visit(&self, path: &Path<'_>, meta: &Meta, v: &mut impl Visitor<T>) {
+        self.law.visit(path, meta, v);
+        self.last.visit(&path.join("held"), meta, v);
+        v.number(&path.join("flag"), &FLAG, self.flag);
+    }
+    #[inline(always)]
+    fn visit_mut(&mut self, path: &Path<'_>, meta: &Meta, v: &mut impl VisitorMut<T>) {
+        self.law.visit_mut(path, meta, v);
+        self.last.visit_mut(&path.join("held"), meta, v);
+        v.number(&path.join("flag"), &FLAG, &mut self.flag);
+    }
+    #[inline(always)]
+    fn zip<const M: usize, U: Real>(
+        rows: [&Self; M],
+        f: &mut impl FnMut([T; M]) -> U,
+    ) -> Self::With<U> {
+        GuardedObserver {
+            law: L::zip(rows.map(|row| &row.law), f),
+            last: Measurement::zip(rows.map(|row| &row.last), f),
+            flag: f(rows.map(|row| row.flag)),
+        }
+    }
+}
+
+const FLAG: Meta = Meta::signal("1", "1 where the law held its last good value.");
+
+/// Implements [`Controller`] for a registry.
+#[macro_export]
+macro_rules! dispatch_controller {
+    ($name:ident [$($variant:ident)+] ($reference:ident => $command:ident)) => {
+        impl<T: $crate::real::Real> $crate::controller::Controller<T> for $name<T> {
+            type Reference = $crate::signals::$reference<T>;
+            type Command = $crate::signals::$command<T>;
+            #[inline(always)]
+            fn update(&mut self, measurement: &$crate::signals::Measurement<T>, reference: &Self::Reference, dt: T) -> Self::Command {
+                match self { $( Self::$variant(law) => law.update(measurement, reference, dt), )+ }
+            }
+            #[inline(always)]
+            fn reset(&mut self, measurement: &$crate::signals::Measurement<T>) {
+                match self { $( Self::$variant(law) => law.reset(measurement), )+ }
+            }
+            #[inline(always)]
+            fn limit(&self) -> T {
+                match self { $( Self::$variant(law) => law.limit(), )+ }
+            }
+        }
+    };
+}
+
+/// Implements [`Observer`] for a registry.
+#[macro_export]
+macro_rules! dispatch_observer {
+    ($name:ident [$($variant:ident)+] ()) => {
+        impl<T: $crate::real::Real> $crate::controller::Observer<T> for $name<T> {
+            #[inline(always)]
+            fn estimate(&self) -> $crate::math::Vec3<T, $crate::math::World> {
+                match self { $( Self::$variant(law) => law.estimate(), )+ }
+            }
+            #[inline(always)]
+            fn correct(&mut self, measurement: &$crate::signals::Measurement<T>, dt: T) {
+                match self { $( Self::$variant(law) => law.correct(measurement, dt), )+ }
+            }
+            #[inline(always)]
+            fn advance(&mut self, applied: &$crate::signals::Applied<T>, dt: T) {
+                match self { $( Self::$variant(law) => law.advance(applied, dt), )+ }
+            }
+            #[inline(always)]
+            fn reset(&mut self, measurement: &$crate::signals::Measurement<T>) {
+                match self { $( Self::$variant(law) => law.reset(measurement), )+ }
+            }
+            #[inline(always)]
+            fn limit(&self) -> T {
+                match self { $( Self::$variant(law) => law.limit(), )+ }
+            }
+        }
+    };
+}

@@ -1,0 +1,218 @@
+//! Rotations: a unit Hamilton quaternion that takes coordinates in one frame to another.
+
+use core::marker::PhantomData;
+use core::ops::Mul;
+
+use crate::math::{Body, Frame, Vec3, World};
+use crate::real::Real;
+use crate::record;
+use crate::record::{Meta, Path, Record, Visitor, VisitorMut};
+
+record! {
+    /// Roll, pitch and yaw in the order Z-Y-X: R = Rz(yaw) Ry(pitch) Rx(roll).
+    pub struct Euler {
+        /// About the body's forward axis, in -pi..=pi.
+        roll: T [rad];
+        /// About the left axis, in -pi/2..=pi/2.
+        pitch: T [rad];
+        /// About the world's up axis, in -pi..=pi.
+        yaw: T [rad];
+    }
+}
+
+/// Takes coordinates in `A` to coordinates in `B`; a unit quaternion `w + xi + yj + zk`.
+#[derive(Clone, Copy, Debug)]
+pub struct Rotation<T, A, B> {
+    /// Scalar part.
+    pub w: T,
+    /// First component of the vector part.
+    pub x: T,
+    /// Second component of the vector part.
+    pub y: T,
+    /// Third component of the vector part.
+    pub z: T,
+    frames: PhantomData<(A, B)>,
+}
+
+impl<T: Real, A: Frame, B: Frame> Default for Rotation<T, A, B> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self::identity()
+    }
+}
+
+impl<T: Real, A: Frame, B: Frame> Rotation<T, A, B> {
+    /// The rotation with this unit quaternion; the caller sees to the norm.
+    #[inline(always)]
+    pub fn from_quaternion(w: T, x: T, y: T, z: T) -> Self {
+        Self { w, x, y, z, frames: PhantomData }
+    }
+    /// The rotation that changes nothing.
+    #[inline(always)]
+    pub fn identity() -> Self {
+        Self::from_quaternion(T::one(), T::zero(), T::zero(), T::zero())
+    }
+    /// The opposite rotation.
+    #[inline(always)]
+    pub fn inverse(self) -> Rotation<T, B, A> {
+        Rotation::from_quaternion(self.w, -self.x, -self.y, -self.z)
+    }
+    /// The quaternion scaled to norm one.
+    #[inline(always)]
+    pub fn normalised(self) -> Self {
+        let norm = (self.w.sq() + self.x.sq() + self.y.sq() + self.z.sq()).sqrt();
+        let k = T::one() / norm;
+        Self::from_quaternion(self.w * k, self.x * k, self.y * k, self.z * k)
+    }
+    /// The vector part of the quaternion.
+    #[inline(always)]
+    pub fn vector(self) -> Vec3<T, A> {
+        Vec3::new(self.x, self.y, self.z)
+    }
+    /// The same rotation with non-negative scalar part.
+    #[inline(always)]
+    pub fn shortest(self) -> Self {
+        let sign = T::one().with_sign(self.w);
+        Self::from_quaternion(self.w * sign, self.x * sign, self.y * sign, self.z * sign)
+    }
+    /// Rotation angle in rad, in 0..=pi.
+    #[inline(always)]
+    pub fn angle(self) -> T {
+        self.vector().norm().atan2(self.w.abs()) * T::lit(2.0)
+    }
+    /// The third axis of `A` in coordinates of `B`: R `e_z`.
+    #[inline(always)]
+    pub fn z_axis(self) -> Vec3<T, B> {
+        let two = T::lit(2.0);
+        Vec3::new(
+            two * (self.x * self.z + self.w * self.y),
+            two * (self.y * self.z - self.w * self.x),
+            T::one() - two * (self.x.sq() + self.y.sq()),
+        )
+    }
+    /// The first axis of `A` in coordinates of `B`: R `e_x`.
+    #[inline(always)]
+    pub fn x_axis(self) -> Vec3<T, B> {
+        let two = T::lit(2.0);
+        Vec3::new(
+            T::one() - two * (self.y.sq() + self.z.sq()),
+            two * (self.x * self.y + self.w * self.z),
+            two * (self.x * self.z - self.w * self.y),
+        )
+    }
+    /// The second axis of `A` in coordinates of `B`: R `e_y`.
+    #[inline(always)]
+    pub fn y_axis(self) -> Vec3<T, B> {
+        let two = T::lit(2.0);
+        Vec3::new(
+            two * (self.x * self.y - self.w * self.z),
+            T::one() - two * (self.x.sq() + self.z.sq()),
+            two * (self.y * self.z + self.w * self.x),
+        )
+    }
+    /// The rotation whose matrix has these columns: the axes of `A` in coordinates of `B`, which
+    /// must be orthonormal and right-handed. The largest of the four quaternion components is found
+    /// first, so no digit is lost at any attitude (Shepperd 1978).
+    #[inline(always)]
+    pub fn from_axes(x: Vec3<T, B>, y: Vec3<T, B>, z: Vec3<T, B>) -> Self {
+        let one = T::one();
+        // Four times the square of each component; the largest is at least one.
+        let w4 = one + x.x + y.y + z.z;
+        let x4 = one + x.x - y.y - z.z;
+        let y4 = one - x.x + y.y - z.z;
+        let z4 = one - x.x - y.y + z.z;
+        // Each row is the quaternion times four times its own component.
+        let rows = [
+            [w4, y.z - z.y, z.x - x.z, x.y - y.x],
+            [y.z - z.y, x4, x.y + y.x, z.x + x.z],
+            [z.x - x.z, x.y + y.x, y4, y.z + z.y],
+            [x.y - y.x, z.x + x.z, y.z + z.y, z4],
+        ];
+        let mut largest = w4;
+        let mut row = rows[0];
+        for (candidate, of) in [(x4, rows[1]), (y4, rows[2]), (z4, rows[3])] {
+            let better = largest.lt(candidate);
+            largest = T::select(better, candidate, largest);
+            row = core::array::from_fn(|i| T::select(better, of[i], row[i]));
+        }
+        let k = T::lit(0.5) / largest.sqrt();
+        Self::from_quaternion(row[0] * k, row[1] * k, row[2] * k, row[3] * k).normalised()
+    }
+}
+
+impl<T: Real> Rotation<T, Body, World> {
+    /// The attitude with these Euler angles.
+    #[inline(always)]
+    pub fn from_euler(angles: Euler<T>) -> Self {
+        let (sr, cr) = angles.roll.half().sin_cos();
+        let (sp, cp) = angles.pitch.half().sin_cos();
+        let (sy, cy) = angles.yaw.half().sin_cos();
+        Self::from_quaternion(
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        )
+    }
+    /// Euler angles of the attitude; roll and yaw are not unique at a pitch of 90 deg.
+    #[inline(always)]
+    pub fn euler(self) -> Euler<T> {
+        let (x, z) = (self.x_axis(), self.z_axis());
+        let y_up = T::lit(2.0) * (self.y * self.z + self.w * self.x);
+        Euler { roll: y_up.atan2(z.z), pitch: -x.z.asin(), yaw: x.y.atan2(x.x) }
+    }
+}
+
+impl<T: Real, A: Frame, B: Frame> Mul<Vec3<T, A>> for Rotation<T, A, B> {
+    type Output = Vec3<T, B>;
+    #[inline(always)]
+    fn mul(self, v: Vec3<T, A>) -> Vec3<T, B> {
+        let q = self.vector();
+        let t = q.cross(v) * T::lit(2.0);
+        (v + t * self.w + q.cross(t)).assume_frame()
+    }
+}
+
+impl<T: Real, A: Frame, B: Frame, C: Frame> Mul<Rotation<T, A, B>> for Rotation<T, B, C> {
+    type Output = Rotation<T, A, C>;
+    #[inline(always)]
+    fn mul(self, r: Rotation<T, A, B>) -> Rotation<T, A, C> {
+        Rotation::from_quaternion(
+            self.w * r.w - self.x * r.x - self.y * r.y - self.z * r.z,
+            self.w * r.x + self.x * r.w + self.y * r.z - self.z * r.y,
+            self.w * r.y - self.x * r.z + self.y * r.w + self.z * r.x,
+            self.w * r.z + self.x * r.y - self.y * r.x + self.z * r.w,
+        )
+    }
+}
+
+impl<T: Real, A: Frame, B: Frame> Record<T> for Rotation<T, A, B> {
+    type With<U: Real> = Rotation<U, A, B>;
+    #[inline(always)]
+    fn visit(&self, path: &Path<'_>, meta: &Meta, v: &mut impl Visitor<T>) {
+        v.number(&path.join("w"), meta, self.w);
+        v.number(&path.join("x"), meta, self.x);
+        v.number(&path.join("y"), meta, self.y);
+        v.number(&path.join("z"), meta, self.z);
+    }
+    #[inline(always)]
+    fn visit_mut(&mut self, path: &Path<'_>, meta: &Meta, v: &mut impl VisitorMut<T>) {
+        v.number(&path.join("w"), meta, &mut self.w);
+        v.number(&path.join("x"), meta, &mut self.x);
+        v.number(&path.join("y"), meta, &mut self.y);
+        v.number(&path.join("z"), meta, &mut self.z);
+    }
+    #[inline(always)]
+    fn zip<const M: usize, U: Real>(
+        rows: [&Self; M],
+        f: &mut impl FnMut([T; M]) -> U,
+    ) -> Rotation<U, A, B> {
+        Rotation {
+            w: f(rows.map(|row| row.w)),
+            x: f(rows.map(|row| row.x)),
+            y: f(rows.map(|row| row.y)),
+            z: f(rows.map(|row| row.z)),
+            frames: PhantomData,
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! Third-order sliding-mode (HOSM) disturbance observer from position, explicit Euler.
+//!
+//!   v0  = -lambda2 L^(1/3) [z0 - x]^(2/3) + z1,    z0' = v0             (1)
+//!   v1  = -lambda1 L^(1/2) [z1 - v0]^(1/2) + z2,   z1' = v1 + u         (2)
+//!   z2' = -lambda0 L [z2 - v1]^0                                        (3)
+//!
+//! with [a]^p = |a|^p sign(a). z0, z1, z2 estimate position, velocity and disturbance.
+//!
+//! | article | here      | unit  | frame |
+//! |---------|-----------|-------|-------|
+//! | x1      | `x`       | m     | world |
+//! | tau_f'  | `u`       | m/s^2 | world |
+//! | `z2`      | `z2`        | m/s^2 | world |
+//! | L0      | lipschitz | m/s^3 | world |
+//!
+//! The article prints z1' = v1 + tau_f' + z2, but v1 ends in + z2 already: with the doubled z2 the
+//! estimate converges to half of the disturbance. It is kept as `z2 = "doubled"`.
+//!
+//! Source: Levant, Int. J. Control 76 (2003) 924-941; Shtessel, Shkolnikov and Levant, Automatica 43
+//! (2007) 1470-1476. Valid while |d'| <= L. Explicit Euler chatters in proportion to L.
+
+use crate::controller::Observer;
+use crate::math::{Vec3, World};
+use crate::real::Real;
+use crate::signals::{Applied, Measurement, Model};
+use crate::{choice, options, record};
+
+record! {
+    /// Gains of the HOSM observer.
+    pub struct Gains {
+        /// Bound L on the rate of the disturbance.
+        lipschitz: T [m/s^3] = 1.5, in 0.0 => 1e6;
+        /// Innermost gain lambda0.
+        lambda0: T [1] = 1.1, in 0.0 => 1e3;
+        /// Middle gain lambda1.
+        lambda1: T [1] = 1.5, in 0.0 => 1e3;
+        /// Outer gain lambda2.
+        lambda2: T [1] = 2.0, in 0.0 => 1e3;
+        /// Bound on each component of the estimate.
+        limit: T [m/s^2] = 1e6, in 0.0 => 1e6;
+    }
+}
+
+choice! {
+    /// Which acceleration the observer takes as known.
+    pub enum Input {
+        /// The thrust that the rotors give, along the real body axis.
+        "measured" => Measured,
+        /// The thrust vector that the position loop asks for.
+        "commanded" => Commanded,
+    }
+}
+
+choice! {
+    /// How often `z2` enters the velocity equation.
+    pub enum Z2 {
+        /// Once, as Levant has it.
+        "single" => Single,
+        /// Twice, as the article prints it: converges to half of the disturbance.
+        "doubled" => Doubled,
+    }
+}
+
+options! {
+    /// Choices of the HOSM observer.
+    pub struct Options {
+        /// Which acceleration the observer takes as known.
+        input: Input;
+        /// How often `z2` enters the velocity equation.
+        z2: Z2;
+    }
+}
+
+record! {
+    /// HOSM observer.
+    pub struct Hosm {
+        /// Gains.
+        gains: Gains<T> [];
+        /// Measured position.
+        x: Vec3<T, World> [m];
+        /// Estimated position.
+        z0: Vec3<T, World> [m];
+        /// Estimated velocity.
+        z1: Vec3<T, World> [m/s];
+        /// Estimated disturbance.
+        z2: Vec3<T, World> [m/s^2];
+        structure {
+            /// Choices.
+            options: Options;
+        }
+    }
+}
+
+impl<T: Real> Hosm<T> {
+    /// The observer at rest in the origin; `reset` moves it to the vehicle.
+    pub fn new(gains: Gains<T>, options: Options, _: &Model<T>) -> Self {
+        Self { gains, options, ..Self::default() }
+    }
+}
+
+impl<T: Real> Observer<T> for Hosm<T> {
+    #[inline(always)]
+    fn estimate(&self) -> Vec3<T, World> {
+        self.z2
+    }
+
+    #[inline(always)]
+    fn correct(&mut self, measurement: &Measurement<T>, _: T) {
+        self.x = measurement.position;
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, applied: &Applied<T>, dt: T) {
+        let Gains { lipschitz, lambda0, lambda1, lambda2, .. } = self.gains;
+        let u = match self.options.input {
+            Input::Measured => applied.measured,
+            Input::Commanded => applied.commanded,
+        };
+        let Self { x, z0, z1, z2, .. } = *self;
+
+        let v0 = z1 - (z0 - x).map(two_thirds_power) * (lambda2 * lipschitz.cbrt()); // (1)
+        let v1 = z2 - (z1 - v0).map(signed_root) * (lambda1 * lipschitz.sqrt()); // (2)
+        let z1_dot = match self.options.z2 {
+            Z2::Single => v1 + u,
+            Z2::Doubled => v1 + u + z2,
+        };
+        let z2_dot = -(z2 - v1).map(T::sign) * (lambda0 * lipschitz); // (3)
+
+        self.z0 += v0 * dt;
+        self.z1 += z1_dot * dt;
+        self.z2 += z2_dot * dt;
+    }
+
+    fn reset(&mut self, measurement: &Measurement<T>) {
+        self.x = measurement.position;
+        self.z0 = measurement.position;
+        self.z1 = measurement.velocity;
+        self.z2 = Vec3::zero();
+    }
+
+    fn limit(&self) -> T {
+        self.gains.limit
+    }
+}
+
+/// |a|^(2/3) sign(a).
+#[inline(always)]
+fn two_thirds_power<T: Real>(a: T) -> T {
+    a.cbrt().sq().with_sign(a)
+}
+
+/// |a|^(1/2) sign(a).
+#[inline(always)]
+fn signed_root<T: Real>(a: T) -> T {
+    a.abs().sqrt().with_sign(a)
+}

@@ -1,0 +1,304 @@
+//! Declare once: a plain struct of numbers with names, units, frames and meaning.
+//!
+//! `record!` writes what every signal, state and set of gains needs: a walk over all numbers with
+//! their dotted names (headers, logs, scenario files, sweeps), a change of scalar (`f64` file to
+//! `f32` firmware), and eight vehicles side by side. All of these come from one primitive,
+//! [`Record::zip`].
+
+use core::fmt;
+use core::marker::PhantomData;
+
+use crate::lanes::Lanes;
+use crate::real::{Mask, Real};
+
+/// What a declaration says of one number.
+#[derive(Clone, Copy, Debug)]
+pub struct Meta {
+    /// SI unit, such as `m/s`; `1` without a unit; `count` for whole numbers.
+    pub unit: &'static str,
+    /// `world`, `body`, or empty where no frame applies.
+    pub frame: &'static str,
+    /// One sentence of meaning, as the declaration gives it.
+    pub doc: &'static str,
+    /// Smallest and largest value that a file may give.
+    pub range: (f64, f64),
+}
+
+impl Meta {
+    /// A signal: any finite value.
+    pub const fn signal(unit: &'static str, doc: &'static str) -> Self {
+        Self { unit, frame: "", doc, range: (-f64::MAX, f64::MAX) }
+    }
+
+    /// The same in a frame.
+    pub const fn in_frame(self, frame: &'static str) -> Self {
+        Self { frame, ..self }
+    }
+}
+
+/// A dotted name, written from the root: `position.gains.kp.x`.
+#[derive(Clone, Copy, Debug)]
+pub struct Path<'a> {
+    parent: Option<&'a Path<'a>>,
+    name: &'static str,
+}
+
+impl Path<'_> {
+    /// The empty name, from which all others start.
+    pub const ROOT: Path<'static> = Path { parent: None, name: "" };
+
+    /// The name one level down.
+    pub const fn join(&self, name: &'static str) -> Path<'_> {
+        Path { parent: Some(self), name }
+    }
+
+    /// The last part of the name.
+    pub const fn name(&self) -> &'static str {
+        self.name
+    }
+}
+
+impl fmt::Display for Path<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(parent) = self.parent {
+            parent.fmt(f)?;
+            if !parent.name.is_empty() {
+                f.write_str(".")?;
+            }
+        }
+        f.write_str(self.name)
+    }
+}
+
+/// Receives every number of a record.
+pub trait Visitor<T> {
+    /// One number: its dotted name, its declaration, its value.
+    fn number(&mut self, path: &Path<'_>, meta: &Meta, value: T);
+}
+
+/// Receives every number of a record and may change it.
+pub trait VisitorMut<T> {
+    /// One number: its dotted name, its declaration, its place.
+    fn number(&mut self, path: &Path<'_>, meta: &Meta, value: &mut T);
+    /// Announces the components of a vector: a file may give one number for all of them.
+    fn vector(&mut self, _path: &Path<'_>, _meta: &Meta, _components: &'static [&'static str]) {}
+}
+
+/// A plain value made of numbers, all of the scalar `T`.
+pub trait Record<T: Real>: Copy {
+    /// The same structure with another scalar.
+    type With<U: Real>: Record<U>;
+
+    /// Walks over all numbers in the order of declaration.
+    fn visit(&self, path: &Path<'_>, meta: &Meta, v: &mut impl Visitor<T>);
+
+    /// Walks over all numbers, each of which may be changed.
+    fn visit_mut(&mut self, path: &Path<'_>, meta: &Meta, v: &mut impl VisitorMut<T>);
+
+    /// Combines `N` records of one structure number by number. What is not a number (an option,
+    /// the choice of a law) is taken from the first.
+    fn zip<const N: usize, U: Real>(
+        rows: [&Self; N],
+        f: &mut impl FnMut([T; N]) -> U,
+    ) -> Self::With<U>;
+}
+
+/// What follows from [`Record::zip`] for every record.
+pub trait RecordExt<T: Real>: Record<T> {
+    /// The same record in another precision; lane zero where there are several.
+    #[inline(always)]
+    fn cast<U: Real>(&self) -> Self::With<U> {
+        Self::zip([self], &mut |[x]| U::lit(x.to_f64()))
+    }
+
+    /// `N` vehicles side by side, one lane each.
+    #[inline(always)]
+    fn gather<const N: usize>(rows: [&Self; N]) -> Self::With<Lanes<T, N>>
+    where
+        Lanes<T, N>: Real,
+    {
+        Self::zip(rows, &mut |x| Lanes(x))
+    }
+
+    /// Vehicle `i` of a batch.
+    #[inline(always)]
+    fn pick(&self, i: usize) -> Self::With<T::Scalar> {
+        Self::zip([self], &mut |[x]| x.lane(i))
+    }
+
+    /// Whether every number is finite, lane by lane.
+    #[inline(always)]
+    fn finite(&self) -> T::Mask {
+        let mut good = T::Mask::splat(true);
+        let _: Self::With<T> = Self::zip([self], &mut |[x]| {
+            good = good & x.is_finite();
+            x
+        });
+        good
+    }
+}
+
+impl<T: Real, R: Record<T>> RecordExt<T> for R {}
+
+/// `new` where the mask says yes, else `old`.
+#[inline(always)]
+pub fn blend<T: Real, R: Record<T, With<T> = R>>(mask: T::Mask, new: &R, old: &R) -> R {
+    R::zip([new, old], &mut |[a, b]| T::select(mask, a, b))
+}
+
+/// Every number clamped to `-limit..=limit`.
+#[inline(always)]
+pub fn clamp<T: Real, R: Record<T, With<T> = R>>(record: &R, limit: T) -> R {
+    R::zip([record], &mut |[x]| x.clamp(-limit, limit))
+}
+
+/// The number is the smallest record.
+impl<T: Real> Record<T> for T {
+    type With<U: Real> = U;
+    #[inline(always)]
+    fn visit(&self, path: &Path<'_>, meta: &Meta, v: &mut impl Visitor<T>) {
+        v.number(path, meta, *self);
+    }
+    #[inline(always)]
+    fn visit_mut(&mut self, path: &Path<'_>, meta: &Meta, v: &mut impl VisitorMut<T>) {
+        v.number(path, meta, self);
+    }
+    #[inline(always)]
+    fn zip<const M: usize, U: Real>(rows: [&Self; M], f: &mut impl FnMut([T; M]) -> U) -> U {
+        f(rows.map(|x| *x))
+    }
+}
+
+/// A value that one number can fill: a number itself, or a vector with equal components.
+pub trait Uniform {
+    /// The value with `x` in every place.
+    fn uniform(x: f64) -> Self;
+}
+
+impl<T: Real> Uniform for T {
+    #[inline(always)]
+    fn uniform(x: f64) -> Self {
+        T::lit(x)
+    }
+}
+
+/// The digits of array positions, as names; lists in a record are at most this long.
+const INDEX: [&str; 8] = ["0", "1", "2", "3", "4", "5", "6", "7"];
+
+impl<T: Real, R: Record<T>, const K: usize> Record<T> for [R; K] {
+    type With<U: Real> = [R::With<U>; K];
+    #[inline(always)]
+    fn visit(&self, path: &Path<'_>, meta: &Meta, v: &mut impl Visitor<T>) {
+        for (item, name) in self.iter().zip(INDEX) {
+            item.visit(&path.join(name), meta, v);
+        }
+    }
+    #[inline(always)]
+    fn visit_mut(&mut self, path: &Path<'_>, meta: &Meta, v: &mut impl VisitorMut<T>) {
+        for (item, name) in self.iter_mut().zip(INDEX) {
+            item.visit_mut(&path.join(name), meta, v);
+        }
+    }
+    #[inline(always)]
+    fn zip<const M: usize, U: Real>(
+        rows: [&Self; M],
+        f: &mut impl FnMut([T; M]) -> U,
+    ) -> Self::With<U> {
+        core::array::from_fn(|k| R::zip(rows.map(|row| &row[k]), f))
+    }
+}
+
+/// The record without numbers.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Nothing<T>(PhantomData<T>);
+
+impl<T: Real> Record<T> for Nothing<T> {
+    type With<U: Real> = Nothing<U>;
+    #[inline(always)]
+    fn visit(&self, _: &Path<'_>, _: &Meta, _: &mut impl Visitor<T>) {}
+    #[inline(always)]
+    fn visit_mut(&mut self, _: &Path<'_>, _: &Meta, _: &mut impl VisitorMut<T>) {}
+    #[inline(always)]
+    fn zip<const M: usize, U: Real>(
+        _: [&Self; M],
+        _: &mut impl FnMut([T; M]) -> U,
+    ) -> Self::With<U> {
+        Nothing(PhantomData)
+    }
+}
+
+/// Declares a record.
+///
+/// ```
+/// use stormpetrel_control::record;
+/// record! {
+///     /// Gains of a law.
+///     pub struct Gains {
+///         /// Proportional gain.
+///         kp: T [1/s^2] = 6.0, in 0.0 => 1e6;
+///     }
+/// }
+/// assert_eq!(Gains::<f64>::default().kp, 6.0);
+/// ```
+///
+/// A field is `name: Type [unit]`, for gains followed by `= default, in lowest => highest`, then `;`.
+/// After the numbers may stand `structure { name: Type; }`: options, equal in all lanes of a batch.
+/// `Default` gives the declared defaults; a number without one is zero.
+#[macro_export]
+macro_rules! record {
+    (
+        $(#[$m:meta])* $vis:vis struct $name:ident {
+            $( $(#[doc = $doc:literal])+ $f:ident : $ty:ty [$($unit:tt)*] $(= $default:literal, in $lo:literal => $hi:literal)? ; )*
+            $( structure { $( $(#[$om:meta])* $o:ident : $oty:ty; )* } )?
+        }
+    ) => {
+        $(#[$m])*
+        #[derive(Clone, Copy, Debug)]
+        $vis struct $name<T> {
+            $( $(#[doc = $doc])+ pub $f: $ty, )*
+            $( $( $(#[$om])* pub $o: $oty, )* )?
+        }
+
+        impl<T: $crate::real::Real> Default for $name<T> {
+            #[inline]
+            fn default() -> Self {
+                Self {
+                    $( $f: $crate::record!(@default $ty, $($default)?), )*
+                    $( $( $o: Default::default(), )* )?
+                }
+            }
+        }
+
+        impl<T: $crate::real::Real> $crate::record::Record<T> for $name<T>
+        {
+            type With<U: $crate::real::Real> = $name<U>;
+
+            #[inline(always)]
+            #[allow(unused_variables)]
+            fn visit(&self, path: &$crate::record::Path<'_>, _: &$crate::record::Meta, v: &mut impl $crate::record::Visitor<T>) {
+                $( $crate::record::Record::visit(&self.$f, &path.join(stringify!($f)), &$crate::record!(@meta [$($unit)*] [$($doc)+] $($lo, $hi)?), v); )*
+            }
+            #[inline(always)]
+            #[allow(unused_variables)]
+            fn visit_mut(&mut self, path: &$crate::record::Path<'_>, _: &$crate::record::Meta, v: &mut impl $crate::record::VisitorMut<T>) {
+                $( $crate::record::Record::visit_mut(&mut self.$f, &path.join(stringify!($f)), &$crate::record!(@meta [$($unit)*] [$($doc)+] $($lo, $hi)?), v); )*
+            }
+            #[inline(always)]
+            #[allow(unused_variables)]
+            fn zip<const M: usize, U: $crate::real::Real>(rows: [&Self; M], f: &mut impl FnMut([T; M]) -> U) -> $name<U> {
+                $name {
+                    $( $f: $crate::record::Record::zip(rows.map(|row| &row.$f), f), )*
+                    $( $( $o: rows[0].$o, )* )?
+                }
+            }
+        }
+    };
+    (@default $ty:ty,) => { <$ty as Default>::default() };
+    (@default $ty:ty, $default:literal) => { <$ty as $crate::record::Uniform>::uniform($default) };
+    (@meta [$($unit:tt)*] [$($doc:literal)+]) => {
+        $crate::record::Meta::signal(stringify!($($unit)*), concat!($($doc),+))
+    };
+    (@meta [$($unit:tt)*] [$($doc:literal)+] $lo:literal, $hi:literal) => {
+        $crate::record::Meta { unit: stringify!($($unit)*), frame: "", doc: concat!($($doc),+), range: ($lo, $hi) }
+    };
+}

@@ -1,0 +1,84 @@
+//! From the stack's command to the thrust and torque on the body.
+
+use stormpetrel_control::controller::Plain;
+use stormpetrel_control::math::{Body, Vec3, World};
+use stormpetrel_control::real::Real;
+use stormpetrel_control::registry;
+use stormpetrel_control::signals::Wrench;
+use stormpetrel_control::stack::{Command, Exit};
+
+use crate::state::State;
+use crate::vehicle::Vehicle;
+
+/// Turns commands into thrust and torque.
+pub trait Actuate<T: Real>: Plain<T> {
+    /// Which level of the stack it listens to.
+    fn exit(&self) -> Exit;
+    /// Takes the command for the coming tick; returns the part that it cannot grant.
+    fn command(&mut self, command: &Command<T>, vehicle: &Vehicle<T>) -> Wrench<T>;
+    /// Lets a lag of its own pass `h` seconds, before each integration step.
+    fn pass(&mut self, _h: T) {}
+    /// The rotors' thrust per mass, m/s^2.
+    fn thrust_per_mass(&self, state: &State<T>, vehicle: &Vehicle<T>) -> Vec3<T, World>;
+    /// The rotors' torque, N m.
+    fn torque(&self, state: &State<T>) -> Vec3<T, Body>;
+    /// Total thrust along the body's up axis, N.
+    fn thrust(&self, state: &State<T>) -> T;
+    /// Acceleration of the rotors, rad/s^2.
+    fn rotor_acceleration(&self, _state: &State<T>, _vehicle: &Vehicle<T>) -> [T; 4] {
+        [T::zero(); 4]
+    }
+    /// Share of the rotors at a speed limit, 0..=1.
+    fn saturation(&self) -> T {
+        T::zero()
+    }
+}
+
+macro_rules! dispatch_actuate {
+    ($name:ident [$($variant:ident)+] ()) => {
+        impl<T: Real> Actuate<T> for $name<T> {
+            #[inline(always)]
+            fn exit(&self) -> Exit {
+                match self { $( Self::$variant(x) => x.exit(), )+ }
+            }
+            #[inline(always)]
+            fn command(&mut self, command: &Command<T>, vehicle: &Vehicle<T>) -> Wrench<T> {
+                match self { $( Self::$variant(x) => x.command(command, vehicle), )+ }
+            }
+            #[inline(always)]
+            fn pass(&mut self, h: T) {
+                match self { $( Self::$variant(x) => x.pass(h), )+ }
+            }
+            #[inline(always)]
+            fn thrust_per_mass(&self, state: &State<T>, vehicle: &Vehicle<T>) -> Vec3<T, World> {
+                match self { $( Self::$variant(x) => x.thrust_per_mass(state, vehicle), )+ }
+            }
+            #[inline(always)]
+            fn torque(&self, state: &State<T>) -> Vec3<T, Body> {
+                match self { $( Self::$variant(x) => x.torque(state), )+ }
+            }
+            #[inline(always)]
+            fn thrust(&self, state: &State<T>) -> T {
+                match self { $( Self::$variant(x) => x.thrust(state), )+ }
+            }
+            #[inline(always)]
+            fn rotor_acceleration(&self, state: &State<T>, vehicle: &Vehicle<T>) -> [T; 4] {
+                match self { $( Self::$variant(x) => x.rotor_acceleration(state, vehicle), )+ }
+            }
+            #[inline(always)]
+            fn saturation(&self) -> T {
+                match self { $( Self::$variant(x) => x.saturation(), )+ }
+            }
+        }
+    };
+}
+
+registry! {
+    /// Actuations, under their names in scenario files.
+    pub enum Actuation / ActuationSettings keyed "kind" from Vehicle;
+    dispatch dispatch_actuate ();
+    "thrust-vector" => ThrustVector in thrust_vector;
+    "wrench" => IdealWrench in wrench;
+    "lagged-wrench" => LaggedWrench in lagged_wrench;
+    "rotors" => Rotors in rotors;
+}

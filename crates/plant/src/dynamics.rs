@@ -1,0 +1,113 @@
+//! Newton and Euler, and the integrator.
+//!
+//!   x' = v                                                               (1)
+//!   v' = a_T - g e_z + d_f/m                                             (2)
+//!   q' = 1/2 q (x) (0, omega)                                            (3)
+//!   I omega' = -omega x I omega + tau + d_tau                            (4)
+//!
+//! a_T is the rotors' thrust per mass. The quaternion replaces the article's Euler angles, which are
+//! singular at 90 deg of pitch; the force disturbance enters divided by the mass, which the article
+//! forgets. Classical Runge-Kutta of order 4; the quaternion is normalised after every step.
+
+use stormpetrel_control::math::{Body, Vec3, World};
+use stormpetrel_control::real::Real;
+use stormpetrel_control::record;
+
+use crate::actuation::{Actuate, Actuation};
+use crate::state::{Derivative, State};
+use crate::vehicle::Vehicle;
+
+record! {
+    /// What pushes the vehicle from outside.
+    pub struct Push {
+        /// Force on the centre of mass.
+        force: Vec3<T, World> [N];
+        /// Torque about the centre of mass.
+        torque: Vec3<T, Body> [N m];
+    }
+}
+
+/// Acceleration of the centre of mass (2), m/s^2.
+#[inline(always)]
+pub fn acceleration<T: Real>(
+    thrust_per_mass: Vec3<T, World>,
+    push_per_mass: Vec3<T, World>,
+    gravity: T,
+) -> Vec3<T, World> {
+    thrust_per_mass - Vec3::up(gravity) + push_per_mass
+}
+
+/// What stays constant over a control tick, prepared once.
+#[derive(Clone, Copy, Debug)]
+pub struct Held<T> {
+    /// Disturbance force per mass, m/s^2.
+    pub push_per_mass: Vec3<T, World>,
+    /// Disturbance torque, N m.
+    pub torque: Vec3<T, Body>,
+    /// Reciprocal moments of inertia, 1/(kg m^2).
+    pub per_inertia: Vec3<T, Body>,
+}
+
+impl<T: Real> Held<T> {
+    /// For this vehicle and push.
+    #[inline(always)]
+    pub fn new(vehicle: &Vehicle<T>, push: &Push<T>) -> Self {
+        Self {
+            push_per_mass: push.force * (T::one() / vehicle.mass),
+            torque: push.torque,
+            per_inertia: vehicle.inertia.map(|i| T::one() / i),
+        }
+    }
+}
+
+/// The time derivative of the state, (1) to (4).
+#[inline(always)]
+pub fn derivative<T: Real>(
+    state: &State<T>,
+    vehicle: &Vehicle<T>,
+    actuation: &Actuation<T>,
+    held: &Held<T>,
+) -> Derivative<T> {
+    let omega = state.rate;
+    let q = state.attitude;
+    let half = omega * T::lit(0.5);
+    let torque = actuation.torque(state) + held.torque;
+    let gyroscopic = omega.cross(omega.scale(vehicle.inertia));
+    Derivative {
+        position: state.velocity, // (1)
+        velocity: acceleration(
+            actuation.thrust_per_mass(state, vehicle),
+            held.push_per_mass,
+            vehicle.gravity,
+        ), // (2)
+        attitude: [
+            -(q.x * half.x + q.y * half.y + q.z * half.z),
+            q.w * half.x + q.y * half.z - q.z * half.y,
+            q.w * half.y + q.z * half.x - q.x * half.z,
+            q.w * half.z + q.x * half.y - q.y * half.x,
+        ], // (3)
+        rate: (torque - gyroscopic).scale(held.per_inertia), // (4)
+        rotor_speed: actuation.rotor_acceleration(state, vehicle),
+    }
+}
+
+/// One Runge-Kutta step of `h` seconds.
+#[inline(always)]
+pub fn runge_kutta<T: Real>(
+    state: &State<T>,
+    h: T,
+    vehicle: &Vehicle<T>,
+    actuation: &Actuation<T>,
+    held: &Held<T>,
+) -> State<T> {
+    let slope = |at: &State<T>| derivative(at, vehicle, actuation, held);
+    let k1 = slope(state);
+    let k2 = slope(&state.along(&k1, h.half()));
+    let k3 = slope(&state.along(&k2, h.half()));
+    let k4 = slope(&state.along(&k3, h));
+    let two = T::lit(2.0);
+    let mean = record::Record::zip([&k1, &k2, &k3, &k4], &mut |[a, b, c, d]| a + (b + c) * two + d);
+    let mut next = state.along(&mean, h * T::lit(1.0 / 6.0));
+    next.attitude = next.attitude.normalised();
+    next
+}

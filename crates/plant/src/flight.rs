@@ -1,0 +1,281 @@
+//! The closed loop: sense, decide, move. The only one in the project.
+
+use stormpetrel_control::math::{Body, Rotation, Vec3, World};
+use stormpetrel_control::real::{Mask, Real};
+use stormpetrel_control::record;
+use stormpetrel_control::record::{RecordExt, blend};
+use stormpetrel_control::signals::{Applied, Measurement, Model, Trajectory, Wrench};
+use stormpetrel_control::stack::{Command, Stack};
+
+use crate::actuation::{Actuate, Actuation};
+use crate::disturbance::{Disturb, Disturbance, MOST};
+use crate::dynamics::{Held, Push, acceleration, runge_kutta};
+use crate::reference::{Refer, Reference};
+use crate::state::State;
+use crate::vehicle::Vehicle;
+
+record! {
+    /// When a flight counts as failed.
+    pub struct Limits {
+        /// Largest distance from the reference.
+        position_error: T [m] = 5.0, in 0.0 => 1e9;
+        /// Largest angle between the body's up axis and the vertical; 180 allows any attitude.
+        tilt_deg: T [deg] = 180.0, in 0.0 => 180.0;
+        /// Height of the ground.
+        ground: T [m] = -1e9, in -1e9 => 1e9;
+    }
+}
+
+/// Why a flight failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// Too far from the reference.
+    PositionError,
+    /// Tilted too far.
+    Tilt,
+    /// Touched the ground.
+    Ground,
+    /// The state was no longer a finite number.
+    NonFinite,
+}
+
+impl Cause {
+    /// The cause with this number in [`Flight::cause`]; `None` while all is well.
+    pub fn from_code(code: f64) -> Option<Self> {
+        [(1.0, Self::PositionError), (2.0, Self::Tilt), (3.0, Self::Ground), (4.0, Self::NonFinite)]
+            .into_iter()
+            .find_map(|(number, cause)| code.eq(number).then_some(cause))
+    }
+
+    /// As a sentence in a report.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::PositionError => "position error beyond its limit",
+            Self::Tilt => "tilt beyond its limit",
+            Self::Ground => "ground contact",
+            Self::NonFinite => "state no longer finite",
+        }
+    }
+}
+
+record! {
+    /// The true disturbance at one tick.
+    pub struct Disturbed {
+        /// Force from outside.
+        force: Vec3<T, World> [N];
+        /// Torque from outside.
+        torque: Vec3<T, Body> [N m];
+        /// Everything that the law's model does not explain: m (a + g `e_z`) - T R `e_z`, all true.
+        lumped: Vec3<T, World> [N];
+    }
+}
+
+record! {
+    /// What the observer believes at one tick.
+    pub struct Estimated {
+        /// Its estimate of the lumped disturbance, `m d_hat`.
+        force: Vec3<T, World> [N];
+    }
+}
+
+record! {
+    /// Everything about one tick, as the log has it.
+    pub struct Tick {
+        /// Time since the start.
+        time: T [s];
+        /// Centre of mass.
+        position: Vec3<T, World> [m];
+        /// Velocity.
+        velocity: Vec3<T, World> [m/s];
+        /// Body to world.
+        attitude: Rotation<T, Body, World> [1];
+        /// Angular velocity.
+        rate: Vec3<T, Body> [rad/s];
+        /// Speed of each rotor.
+        rotor_speed: [T; 4] [rad/s];
+        /// Where the vehicle should be.
+        reference: Trajectory<T> [];
+        /// What every level asked for.
+        command: Command<T> [];
+        /// Thrust and torque that act.
+        applied: Wrench<T> [];
+        /// True disturbance.
+        disturbance: Disturbed<T> [];
+        /// Estimated disturbance.
+        estimate: Estimated<T> [];
+        /// Share of the rotors asked to run at a limit.
+        saturation: T [1];
+        /// Number of levels that held their last good value.
+        flags: T [count];
+    }
+}
+
+record! {
+    /// A flight: vehicle, laws, world, and how far it has come.
+    pub struct Flight {
+        /// The vehicle.
+        vehicle: Vehicle<T> [];
+        /// What the laws believe of it.
+        model: Model<T> [];
+        /// The laws.
+        stack: Stack<T> [];
+        /// Between laws and body.
+        actuation: Actuation<T> [];
+        /// Where to fly.
+        reference: Reference<T> [];
+        /// What pushes.
+        disturbance: [Disturbance<T>; MOST] [];
+        /// When the flight counts as failed.
+        limits: Limits<T> [];
+        /// Time between two commands.
+        control_step: T [s];
+        /// State of the vehicle.
+        state: State<T> [];
+        /// What the allocation refused at the last tick.
+        unallocated: Wrench<T> [];
+        /// 1 while flying, 0 once failed.
+        alive: T [1];
+        /// Cause of failure, see [`Cause`]; 0 while all is well.
+        cause: T [1];
+        /// Ticks flown.
+        flown: T [count];
+        structure {
+            /// Integration steps in one control step.
+            substeps: u32;
+            /// Ticks since the start, common to all lanes.
+            tick: u64;
+        }
+    }
+}
+
+impl<T: Real> Flight<T> {
+    /// Puts the vehicle at `state` and lets every law begin there.
+    pub fn start(&mut self, state: State<T>) {
+        self.state = state;
+        self.unallocated = Wrench::default();
+        (self.alive, self.cause, self.flown) = (T::one(), T::zero(), T::zero());
+        self.tick = 0;
+        self.stack.reset(&self.measure());
+    }
+
+    /// What the laws see: the true state, and the rotors as their model has them.
+    #[inline(always)]
+    fn measure(&self) -> Measurement<T> {
+        let State { position, velocity, attitude, rate, .. } = self.state;
+        let achieved = Wrench {
+            thrust: self.actuation.thrust(&self.state),
+            torque: self.actuation.torque(&self.state),
+        };
+        Measurement { position, velocity, attitude, rate, achieved, unallocated: self.unallocated }
+    }
+
+    /// Time since the start, s: a count times the step, never a sum.
+    #[inline(always)]
+    pub fn time(&self) -> T {
+        T::lit(self.tick as f64) * self.control_step
+    }
+
+    /// Reference, laws, actuation: everything that happens at the start of a tick.
+    #[inline(always)]
+    pub fn decide(&mut self) -> Tick<T> {
+        let (time, dt) = (self.time(), self.control_step);
+        let reference = self.reference.at(time);
+        let mut push = Push::default();
+        for source in &self.disturbance {
+            let one = source.at(time, &self.vehicle);
+            push.force += one.force;
+            push.torque += one.torque;
+        }
+        let estimate = self.stack.estimate() * self.model.mass;
+        let command = self.stack.update(&self.measure(), &reference, dt);
+        self.unallocated = self.actuation.command(&command, &self.vehicle);
+        let State { position, velocity, attitude, rate, rotor_speed } = self.state;
+        Tick {
+            time,
+            position,
+            velocity,
+            attitude,
+            rate,
+            rotor_speed,
+            reference,
+            command,
+            applied: Wrench {
+                thrust: self.actuation.thrust(&self.state),
+                torque: self.actuation.torque(&self.state),
+            },
+            disturbance: Disturbed {
+                force: push.force,
+                torque: push.torque,
+                lumped: self.lumped(&push),
+            },
+            estimate: Estimated { force: estimate },
+            saturation: self.actuation.saturation(),
+            flags: self.stack.flags(),
+        }
+    }
+
+    /// m_law (a + g_law e_z) - T_law R e_z from the true acceleration, N.
+    #[inline(always)]
+    fn lumped(&self, push: &Push<T>) -> Vec3<T, World> {
+        let thrust = self.actuation.thrust_per_mass(&self.state, &self.vehicle);
+        let per_mass = push.force * (T::one() / self.vehicle.mass);
+        let a = acceleration(thrust, per_mass, self.vehicle.gravity);
+        (a + Vec3::up(self.model.gravity)) * self.model.mass - thrust * self.vehicle.mass
+    }
+
+    /// What drove the vehicle, as an observer may know it: the law's own mass and gravity.
+    #[inline(always)]
+    fn applied(&self, command: &Command<T>) -> Applied<T> {
+        let weight = Vec3::up(self.model.gravity);
+        let thrust = self.actuation.thrust_per_mass(&self.state, &self.vehicle);
+        Applied {
+            commanded: command.thrust.force - weight,
+            measured: thrust * (self.vehicle.mass / self.model.mass) - weight,
+        }
+    }
+
+    /// Observer and plant over the tick that `decide` began. A failed flight stands still.
+    #[inline(always)]
+    pub fn advance(&mut self, tick: &Tick<T>) {
+        let dt = self.control_step;
+        self.judge(tick);
+        let applied = self.applied(&tick.command);
+        self.stack.advance(&applied, dt);
+
+        let push = Push { force: tick.disturbance.force, torque: tick.disturbance.torque };
+        let held = Held::new(&self.vehicle, &push);
+        let h = dt * T::lit(1.0 / f64::from(self.substeps));
+        let mut state = self.state;
+        for _ in 0..self.substeps {
+            self.actuation.pass(h);
+            state = runge_kutta(&state, h, &self.vehicle, &self.actuation, &held);
+        }
+        let finite = state.finite();
+        let alive = T::zero().lt(self.alive);
+        self.state = blend(finite & alive, &state, &self.state);
+        self.fail(!finite, 4.0);
+        self.flown += self.alive;
+        self.tick += 1;
+    }
+
+    /// Ends the flight where a limit is passed.
+    #[inline(always)]
+    fn judge(&mut self, tick: &Tick<T>) {
+        let Limits { position_error, tilt_deg, ground } = self.limits;
+        let error = (tick.position - tick.reference.position).norm();
+        self.fail(position_error.lt(error), 1.0);
+        // Only where a tilt limit is set; 180 deg allows any attitude.
+        if !T::lit(180.0).le(tilt_deg).all() {
+            let (_, lowest) = (tilt_deg * T::lit(core::f64::consts::PI / 180.0)).sin_cos();
+            self.fail(tick.attitude.z_axis().z.lt(lowest) & tilt_deg.lt(T::lit(180.0)), 2.0);
+        }
+        self.fail(tick.position.z.lt(ground), 3.0);
+    }
+
+    #[inline(always)]
+    fn fail(&mut self, failed: T::Mask, code: f64) {
+        let now = failed & T::zero().lt(self.alive);
+        self.alive = T::select(now, T::zero(), self.alive);
+        self.cause = T::select(now, T::lit(code), self.cause);
+    }
+}

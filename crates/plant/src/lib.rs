@@ -1,0 +1,14 @@
+//! What is controlled: the quadrotor, what pushes it, where it should fly, and the closed loop.
+//!
+//! [`flight::Flight`] is the only closed loop in the project: single flights, lanes, browser and
+//! firmware tests all step that one.
+
+#![cfg_attr(not(any(feature = "std", test)), no_std)]
+
+pub mod actuation;
+pub mod disturbance;
+pub mod dynamics;
+pub mod flight;
+pub mod reference;
+pub mod state;
+pub mod vehicle;

@@ -1,0 +1,33 @@
+//! Where the vehicle should be.
+
+use stormpetrel_control::controller::Plain;
+use stormpetrel_control::real::Real;
+use stormpetrel_control::registry;
+use stormpetrel_control::signals::Trajectory;
+
+use crate::vehicle::Vehicle;
+
+/// A trajectory with all derivatives.
+pub trait Refer<T: Real>: Plain<T> {
+    /// The reference `time` seconds after the start.
+    fn at(&self, time: T) -> Trajectory<T>;
+}
+
+macro_rules! dispatch_refer {
+    ($name:ident [$($variant:ident)+] ()) => {
+        impl<T: Real> Refer<T> for $name<T> {
+            #[inline(always)]
+            fn at(&self, time: T) -> Trajectory<T> {
+                match self { $( Self::$variant(x) => x.at(time), )+ }
+            }
+        }
+    };
+}
+
+registry! {
+    /// References, under their names in scenario files.
+    pub enum Reference / ReferenceSettings keyed "shape" from Vehicle;
+    dispatch dispatch_refer ();
+    "hover" => Hover in hover;
+    "helix" => Helix in helix;
+}

@@ -1,0 +1,53 @@
+//! The state of the vehicle and its time derivative.
+
+use stormpetrel_control::math::{Body, Rotation, Vec3, World};
+use stormpetrel_control::real::Real;
+use stormpetrel_control::record;
+
+record! {
+    /// State of the vehicle.
+    pub struct State {
+        /// Centre of mass.
+        position: Vec3<T, World> [m];
+        /// Velocity of the centre of mass.
+        velocity: Vec3<T, World> [m/s];
+        /// Body to world.
+        attitude: Rotation<T, Body, World> [1];
+        /// Angular velocity.
+        rate: Vec3<T, Body> [rad/s];
+        /// Speed of each rotor.
+        rotor_speed: [T; 4] [rad/s];
+    }
+}
+
+record! {
+    /// Time derivative of the state.
+    pub struct Derivative {
+        /// Velocity.
+        position: Vec3<T, World> [m/s];
+        /// Acceleration.
+        velocity: Vec3<T, World> [m/s^2];
+        /// Derivative of the quaternion, w x y z.
+        attitude: [T; 4] [1/s];
+        /// Angular acceleration.
+        rate: Vec3<T, Body> [rad/s^2];
+        /// Acceleration of each rotor.
+        rotor_speed: [T; 4] [rad/s^2];
+    }
+}
+
+impl<T: Real> State<T> {
+    /// The state `h` seconds on along a constant derivative; the quaternion is not normalised.
+    #[inline(always)]
+    pub fn along(&self, d: &Derivative<T>, h: T) -> Self {
+        let q = self.attitude;
+        let [w, x, y, z] = d.attitude;
+        Self {
+            position: self.position + d.position * h,
+            velocity: self.velocity + d.velocity * h,
+            attitude: Rotation::from_quaternion(q.w + w * h, q.x + x * h, q.y + y * h, q.z + z * h),
+            rate: self.rate + d.rate * h,
+            rotor_speed: core::array::from_fn(|i| self.rotor_speed[i] + d.rotor_speed[i] * h),
+        }
+    }
+}
