@@ -1,1 +1,15 @@
-//! x
+//! Experiments with quadrotor controllers: scenario files, metrics, logs, figures, and the article
+//! reproduced.
+
+pub mod catalogue;
+pub mod figures;
+pub mod fly;
+pub mod log;
+pub mod metric;
+pub mod output;
+pub mod plot;
+pub mod reproduce;
+pub mod scenario;
+pub mod sensitivity;
+pub mod shipped;
+pub mod trace;

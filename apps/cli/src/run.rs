@@ -1,0 +1,161 @@
+//! `run`: fly a file.
+
+use std::path::Path;
+
+use serde_json::{Map, Value, json};
+use stormpetrel_lab::figures;
+use stormpetrel_lab::fly::fly;
+use stormpetrel_lab::log::Csv;
+use stormpetrel_lab::output::{Folder, manifest_json, metrics_json};
+use stormpetrel_lab::plot::png;
+use stormpetrel_lab::reproduce::{Flown, Table};
+use stormpetrel_lab::scenario::fault::Fault;
+use stormpetrel_lab::scenario::{File, Scenario, load};
+use stormpetrel_lab::sensitivity::spread;
+use stormpetrel_lab::trace::Trace;
+
+use crate::args::{Common, Run};
+use crate::{Failure, terminal};
+
+/// Points of a trace for figures.
+const POINTS: u64 = 20_000;
+
+/// Flies every variant of the file, or the chosen one.
+pub fn run(args: &Run, common: &Common) -> Result<(), Failure> {
+    let file = load(&args.file, &args.sets)?;
+    let scenarios = choose(file, args.variant.as_deref())?;
+    let broken = |error| Failure::file(&args.out, &error);
+    let folder = Folder::new(&args.out).map_err(broken)?;
+    terminal::remember(folder.staging());
+    let bar = terminal::progress("flying", common.quiet || common.json);
+    bar.set_length(scenarios.len() as u64);
+    let single = scenarios.len() == 1;
+    let mut flights = Vec::new();
+    for scenario in scenarios {
+        let prefix = match scenario.name.split_once(':') {
+            Some((_, variant)) if !single => format!("{variant}/"),
+            _ => String::new(),
+        };
+        flights.push(fly_into(&folder, &prefix, scenario).map_err(broken)?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    folder.publish().map_err(broken)?;
+    report(&flights, &args.out, common)
+}
+
+fn choose(file: File, variant: Option<&str>) -> Result<Vec<Scenario>, Failure> {
+    let Some(variant) = variant else { return Ok(file.scenarios) };
+    let name = |scenario: &Scenario| scenario.name.split_once(':').map(|(_, v)| v.to_owned());
+    let known: Vec<_> = file.scenarios.iter().filter_map(name).collect();
+    let chosen: Vec<_> =
+        file.scenarios.into_iter().filter(|s| name(s).as_deref() == Some(variant)).collect();
+    if chosen.is_empty() {
+        let help = if known.is_empty() {
+            "the file has no variants".into()
+        } else {
+            format!("known: {}", known.join(", "))
+        };
+        let fault = Fault::general(format!("unknown variant `{variant}`")).help(help);
+        return Err(stormpetrel_lab::scenario::fault::Faults::from(fault).into());
+    }
+    Ok(chosen)
+}
+
+/// Flies one scenario and writes log, metrics, manifest and figures.
+fn fly_into(folder: &Folder, prefix: &str, scenario: Scenario) -> std::io::Result<Flown> {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number by rule
+    let every = scenario.run.log_every as u64;
+    let mut csv = Csv::new(folder.create(&format!("{prefix}flight.csv"))?, every)?;
+    let mut trace = Trace::new(scenario.ticks(), POINTS);
+    let mut written = Ok(());
+    let outcome = fly(&scenario, |tick, errors| {
+        trace.push(tick, errors);
+        if written.is_ok() {
+            written = csv.push(tick);
+        }
+    });
+    written?;
+    csv.finish()?;
+    let spread = spread(&scenario);
+    let pretty = |value: &Value| format!("{value:#}\n");
+    let metrics = pretty(&metrics_json(&outcome, spread.as_ref()));
+    folder.write(&format!("{prefix}metrics.json"), metrics.as_bytes())?;
+    folder
+        .write(&format!("{prefix}manifest.json"), pretty(&manifest_json(&scenario)).as_bytes())?;
+    for drawing in figures::all(&scenario, &trace) {
+        folder.write(&format!("{prefix}{}.svg", drawing.name), drawing.svg.as_bytes())?;
+        let image = png(&drawing.svg, 1.0).map_err(std::io::Error::other)?;
+        folder.write(&format!("{prefix}{}.png", drawing.name), &image)?;
+    }
+    Ok(Flown { scenario, outcome, spread, trace })
+}
+
+/// Says what the flights came to; fails where an expectation or a flight did.
+fn report(flights: &[Flown], out: &Path, common: &Common) -> Result<(), Failure> {
+    let bad = print_unmet(flights, common.json);
+    if common.json {
+        let mut all = Map::new();
+        for flown in flights {
+            all.insert(
+                flown.scenario.name.clone(),
+                metrics_json(&flown.outcome, flown.spread.as_ref()),
+            );
+        }
+        terminal::print_json(&json!(all))?;
+    } else if !common.quiet {
+        terminal::print_table(&summary(flights), terminal::width());
+        terminal::say(&format!("\nwritten to {}", out.display()));
+    }
+    if bad { Err(Failure::Unmet) } else { Ok(()) }
+}
+
+fn summary(flights: &[Flown]) -> Table {
+    const METRICS: [(&str, &str); 6] = [
+        ("position.iae", "IAE (m s)"),
+        ("position.rmse", "RMSE (m)"),
+        ("position.max", "max (m)"),
+        ("position.late_max", "late max (m)"),
+        ("attitude.angle.iae", "att. IAE (rad s)"),
+        ("estimate.rmse", "estimate RMSE (N)"),
+    ];
+    let mut head = vec!["flight".to_owned()];
+    head.extend(METRICS.iter().map(|(_, name)| (*name).to_owned()));
+    Table {
+        title: "Flown".into(),
+        head,
+        rows: flights
+            .iter()
+            .map(|flown| stormpetrel_lab::reproduce::row(flown, &METRICS.map(|(name, _)| name)))
+            .collect(),
+        ..Table::default()
+    }
+}
+
+/// Prints every expectation that is not met and every failure that must not be; whether there is one.
+pub fn print_unmet<'a>(flights: impl IntoIterator<Item = &'a Flown>, to_stderr_only: bool) -> bool {
+    let mut bad = false;
+    let mut expected = 0;
+    for flown in flights {
+        let name = &flown.scenario.name;
+        expected += flown.scenario.expect.len();
+        for (rule, value) in flown.unmet() {
+            bad = true;
+            let sensitive =
+                if flown.spread.is_some() { " (sensitive: no number can be expected)" } else { "" };
+            anstream::eprintln!("{name}: expectation failed: {rule}, is {value:.6e}{sensitive}");
+        }
+        if let Some(failure) = flown.outcome.failure.filter(|_| flown.failed()) {
+            bad = true;
+            anstream::eprintln!(
+                "{name}: failed at {:.3} s: {}",
+                failure.time,
+                failure.cause.describe()
+            );
+        }
+    }
+    if !bad && expected > 0 && !to_stderr_only {
+        terminal::say(&format!("all {expected} expectations met"));
+    }
+    bad
+}

@@ -1,0 +1,218 @@
+//! Everything that a scenario can name, with equations, settings and sources.
+
+use std::fmt::Write;
+
+use stormpetrel_control::options::{OptionVisitor, Options};
+use stormpetrel_control::record::{Meta, Path, Record, VisitorMut};
+use stormpetrel_control::registry::Settings;
+use stormpetrel_plant::vehicle::VehicleSettings;
+
+use crate::metric::{About, OF_FLIGHT, OF_SIGNALS, SIGNALS};
+use crate::scenario::{BlockVisitor, Scenario};
+
+/// A number that a file may set.
+#[derive(Clone, Debug)]
+pub struct Number {
+    /// Key in the file.
+    pub name: String,
+    /// SI unit.
+    pub unit: &'static str,
+    /// `world`, `body` or empty.
+    pub frame: &'static str,
+    /// Default.
+    pub default: f64,
+    /// Smallest and largest.
+    pub range: (f64, f64),
+    /// Meaning.
+    pub doc: &'static str,
+}
+
+/// A choice that a file may make.
+#[derive(Clone, Debug)]
+pub struct Choice {
+    /// Key in the file.
+    pub name: &'static str,
+    /// Meaning.
+    pub doc: &'static str,
+    /// Alternatives with their meanings; the first is the default.
+    pub values: Vec<(&'static str, &'static str)>,
+}
+
+/// Something that a scenario can name.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// Block of the scenario file, or `metric`.
+    pub kind: &'static str,
+    /// Key in the block that holds the name.
+    pub key: &'static str,
+    /// Name in scenario files.
+    pub name: String,
+    /// One line.
+    pub summary: String,
+    /// Equations, symbols, source.
+    pub text: String,
+    /// Choices.
+    pub choices: Vec<Choice>,
+    /// Numbers.
+    pub numbers: Vec<Number>,
+}
+
+/// Everything that a scenario can name, by block.
+pub fn catalogue() -> Vec<Entry> {
+    let mut collector = Collector::default();
+    Scenario::defaults().blocks(&mut collector);
+    let mut entries = collector.0;
+    entries.extend(SIGNALS.iter().map(|about| metric("signal", about)));
+    entries.extend(OF_SIGNALS.iter().chain(&OF_FLIGHT).map(|about| metric("metric", about)));
+    entries
+}
+
+fn metric(kind: &'static str, about: &About) -> Entry {
+    Entry {
+        kind,
+        key: "",
+        name: about.name.to_owned(),
+        summary: format!("{} [{}]", about.doc, about.unit),
+        text: String::new(),
+        choices: Vec::new(),
+        numbers: Vec::new(),
+    }
+}
+
+#[derive(Default)]
+struct Collector(Vec<Entry>);
+
+/// The settings of one law.
+#[derive(Default)]
+struct Block {
+    choices: Vec<Choice>,
+    numbers: Vec<Number>,
+}
+
+impl VisitorMut<f64> for Block {
+    fn number(&mut self, path: &Path<'_>, meta: &Meta, value: &mut f64) {
+        let name = path.to_string();
+        let whole = name.split('.').next().unwrap_or_default().to_owned();
+        // A vector with equal components is one line.
+        if let Some(last) = self.numbers.last_mut()
+            && name.contains('.')
+            && last.name.split('.').next() == Some(whole.as_str())
+            && last.default.to_bits() == value.to_bits()
+        {
+            last.name = whole;
+            return;
+        }
+        let Meta { unit, frame, doc, range } = *meta;
+        self.numbers.push(Number { name, unit, frame, default: *value, range, doc: doc.trim() });
+    }
+}
+
+impl OptionVisitor for Block {
+    fn choice(
+        &mut self,
+        name: &'static str,
+        doc: &'static str,
+        names: &'static [&'static str],
+        docs: &'static [&'static str],
+        current: usize,
+    ) -> usize {
+        let values = names.iter().zip(docs).map(|(name, doc)| (*name, doc.trim())).collect();
+        self.choices.push(Choice { name, doc: doc.trim(), values });
+        current
+    }
+}
+
+/// The module documentation at the head of a source text.
+fn module_doc(source: &str) -> String {
+    let lines = source.lines().take_while(|line| line.starts_with("//!"));
+    lines.map(|line| line.trim_start_matches("//!").strip_prefix(' ').unwrap_or("")).fold(
+        String::new(),
+        |mut text, line| {
+            let _ = writeln!(text, "{line}");
+            text
+        },
+    )
+}
+
+impl Collector {
+    fn laws<S: Settings>(&mut self, kind: &'static str) {
+        for (i, name) in S::NAMES.iter().enumerate() {
+            let mut block = Block::default();
+            if let Some(mut settings) = S::named(name) {
+                settings.settings(&mut block);
+            }
+            let mut text = module_doc(S::SOURCES.get(i).copied().unwrap_or_default());
+            if kind == "vehicle" {
+                text = format!(
+                    "{}\n\n{ROTORS}",
+                    VehicleSettings::DOCS.get(i).copied().unwrap_or_default()
+                );
+            }
+            if *name == "rotors" {
+                text = format!("{text}\n{ROTORS}");
+            }
+            let summary = text.lines().next().unwrap_or_default().trim_end_matches('.').to_owned();
+            let Block { choices, numbers } = block;
+            self.0.push(Entry {
+                kind,
+                key: S::KEY,
+                name: (*name).to_owned(),
+                summary,
+                text,
+                choices,
+                numbers,
+            });
+        }
+    }
+}
+
+impl BlockVisitor for Collector {
+    fn block<S: Settings>(&mut self, key: &'static str, _: &'static str, _: &mut S) {
+        self.laws::<S>(key);
+    }
+
+    fn list<S: Settings>(&mut self, key: &'static str, _: &'static str, _: &mut Vec<S>) {
+        self.laws::<S>(key);
+    }
+
+    fn plain<R: Record<f64>, O: Options>(
+        &mut self,
+        key: &'static str,
+        doc: &'static str,
+        numbers: &mut R,
+        options: &mut O,
+    ) {
+        let mut block = Block::default();
+        options.visit(&mut block);
+        numbers.visit_mut(&Path::ROOT, &Meta::signal("", ""), &mut block);
+        let Block { choices, numbers } = block;
+        let summary = doc.trim_end_matches('.').to_owned();
+        self.0.push(Entry {
+            kind: "block",
+            key: "",
+            name: key.to_owned(),
+            text: doc.to_owned(),
+            summary,
+            choices,
+            numbers,
+        });
+    }
+}
+
+/// The rotors of layout `article-plus`, seen from above.
+const ROTORS: &str = "\
+Rotors, layout article-plus, seen from above:
+
+               x forward
+                  |
+               1 (ccw)
+                  |
+  y left  4 (cw)--+--2 (cw)
+                  |
+               3 (ccw)
+
+  T     = k (w1^2 + w2^2 + w3^2 + w4^2)
+  tau_x = l k (-w2^2 + w4^2)
+  tau_y = l k (-w1^2 + w3^2)
+  tau_z = c (-w1^2 + w2^2 - w3^2 + w4^2)
+";

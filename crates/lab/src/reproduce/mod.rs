@@ -1,0 +1,141 @@
+//! The article reproduced: every shipped article scenario flown, judged and compared.
+
+pub mod article;
+mod html;
+pub mod sweep;
+mod tables;
+
+pub use html::{HEADLINES, html};
+pub use tables::{Table, row, tables};
+
+use crate::fly::{Outcome, fly, on_all_cores};
+use crate::scenario::Scenario;
+use crate::scenario::fault::Faults;
+use crate::sensitivity::{Spread, spread};
+use crate::shipped::{SHIPPED, shipped};
+use crate::trace::Trace;
+use sweep::Survival;
+
+/// One flight with all that is told of it.
+#[derive(Clone, Debug)]
+pub struct Flown {
+    /// What was flown.
+    pub scenario: Scenario,
+    /// What it came to.
+    pub outcome: Outcome,
+    /// Present where the flight is sensitive.
+    pub spread: Option<Spread>,
+    /// Its course.
+    pub trace: Trace,
+}
+
+impl Flown {
+    /// Expectations of its file that it does not meet, with the value it shows. A sensitive flight
+    /// shows no number, so it cannot meet one.
+    pub fn unmet(&self) -> Vec<(String, f64)> {
+        let expect = self.scenario.expect.iter();
+        expect
+            .map(|e| (e, self.outcome.get(&e.metric).unwrap_or(f64::NAN)))
+            .filter(|(e, value)| self.spread.is_some() || !e.holds(*value))
+            .map(|(e, value)| (format!("{} must be {}", e.metric, e.describe()), value))
+            .collect()
+    }
+
+    /// Whether the flight failed although its scenario does not allow it.
+    pub fn failed(&self) -> bool {
+        self.outcome.failure.is_some() && !self.scenario.may_fail()
+    }
+
+    /// The part of the name after the colon.
+    pub fn variant(&self) -> &str {
+        self.scenario.name.split_once(':').map_or(self.scenario.name.as_str(), |(_, v)| v)
+    }
+}
+
+/// Flies a scenario and finds out whether it is sensitive; the trace keeps about `points` points.
+pub fn judge(scenario: &Scenario, points: u64) -> Flown {
+    let mut trace = Trace::new(scenario.ticks(), points);
+    let outcome = fly(scenario, |tick, errors| trace.push(tick, errors));
+    Flown { scenario: scenario.clone(), outcome, spread: spread(scenario), trace }
+}
+
+/// All flights of one article file.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Name of the file, such as `article/consistent`.
+    pub name: &'static str,
+    /// Its title.
+    pub title: String,
+    /// What it shows.
+    pub about: String,
+    /// Its flights.
+    pub flights: Vec<Flown>,
+}
+
+impl Group {
+    /// The flight of that variant.
+    pub fn get(&self, variant: &str) -> Option<&Flown> {
+        self.flights.iter().find(|flown| flown.variant() == variant)
+    }
+}
+
+/// Everything that the report tells.
+#[derive(Clone, Debug)]
+pub struct Story {
+    /// All article files, in the order of the program.
+    pub groups: Vec<Group>,
+    /// The largest disturbance that each variant survives.
+    pub survival: Vec<Survival>,
+}
+
+impl Story {
+    /// The group of that file; empty where there is none.
+    pub fn group(&self, name: &str) -> Option<&Group> {
+        self.groups.iter().find(|group| group.name == name)
+    }
+
+    /// Every flight of every group.
+    pub fn flights(&self) -> impl Iterator<Item = &Flown> {
+        self.groups.iter().flat_map(|group| &group.flights)
+    }
+}
+
+/// Points of a trace: enough for a figure.
+const POINTS: u64 = 2000;
+
+/// Flies everything; `done` is told after each flight and each survival search, with the total.
+///
+/// # Errors
+/// A fault in a shipped scenario file.
+pub fn reproduce(done: impl Fn(usize) + Sync + Send) -> Result<Story, Faults> {
+    let mut files = Vec::new();
+    for (name, _) in SHIPPED.iter().filter(|(name, _)| name.starts_with("article/")) {
+        if let Some(file) = shipped(name) {
+            files.push((*name, file?));
+        }
+    }
+    let plan = sweep::plan(&files);
+    let scenarios: Vec<&Scenario> = files.iter().flat_map(|(_, file)| &file.scenarios).collect();
+    let total = scenarios.len() + plan.len();
+    let mut flights = on_all_cores(&scenarios, |scenario| {
+        let flown = judge(scenario, POINTS);
+        done(total);
+        flown
+    })
+    .into_iter();
+    let survival = on_all_cores(&plan, |entry| {
+        let found = sweep::search(entry);
+        done(total);
+        found
+    });
+    let groups = files
+        .into_iter()
+        .map(|(name, file)| Group {
+            name,
+            title: file.title,
+            about: file.about,
+            flights: flights.by_ref().take(file.scenarios.len()).collect(),
+        })
+        .collect();
+    Ok(Story { groups, survival })
+}

@@ -1,0 +1,103 @@
+//! What is wrong with a scenario, said so that the reader can mend it.
+
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+
+/// A text that settings came from: a file or a `--set` argument.
+#[derive(Debug)]
+pub struct Source {
+    /// File name as the user gave it, or `--set`.
+    pub name: String,
+    /// The whole text.
+    pub text: String,
+}
+
+/// A place in a source.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// The source.
+    pub source: Arc<Source>,
+    /// Bytes from, to.
+    pub span: Range<usize>,
+}
+
+/// One thing that is wrong.
+#[derive(Clone, Debug)]
+pub struct Fault {
+    /// Where; `None` for a whole file.
+    pub place: Option<Place>,
+    /// Field, value and rule in one sentence.
+    pub message: String,
+    /// What to do.
+    pub help: Option<String>,
+}
+
+impl Fault {
+    /// A fault at a place.
+    pub fn new(place: &Place, message: impl Into<String>) -> Self {
+        Self { place: Some(place.clone()), message: message.into(), help: None }
+    }
+
+    /// A fault of a whole file or command.
+    pub fn general(message: impl Into<String>) -> Self {
+        Self { place: None, message: message.into(), help: None }
+    }
+
+    /// The same with advice.
+    pub fn help(self, help: impl Into<String>) -> Self {
+        Self { help: Some(help.into()), ..self }
+    }
+}
+
+/// All that is wrong, in the order of the file.
+#[derive(Clone, Debug, Default)]
+pub struct Faults(pub Vec<Fault>);
+
+impl Faults {
+    /// The faults as a failure, or nothing where there are none.
+    ///
+    /// # Errors
+    /// The faults themselves where there are any.
+    pub fn check(self) -> Result<(), Self> {
+        if self.0.is_empty() { Ok(()) } else { Err(self) }
+    }
+}
+
+impl From<Fault> for Faults {
+    fn from(fault: Fault) -> Self {
+        Self(vec![fault])
+    }
+}
+
+impl std::error::Error for Faults {}
+
+impl fmt::Display for Faults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, fault) in self.0.iter().enumerate() {
+            if i > 0 {
+                f.write_str("\n\n")?;
+            }
+            f.write_str(&render(fault))?;
+        }
+        Ok(())
+    }
+}
+
+fn render(fault: &Fault) -> String {
+    let title = Level::ERROR.primary_title(fault.message.as_str());
+    let mut group = match &fault.place {
+        Some(Place { source, span }) => title.element(
+            Snippet::source(source.text.as_str())
+                .path(source.name.as_str())
+                .annotation(AnnotationKind::Primary.span(span.clone())),
+        ),
+        None => title.elements(Vec::<annotate_snippets::Message<'_>>::new()),
+    };
+    if let Some(help) = &fault.help {
+        group = group.element(Level::HELP.message(help.as_str()));
+    }
+    Renderer::plain().render(&[group])
+}

@@ -1,0 +1,383 @@
+//! Reading a scenario file: base, variants, command-line overrides.
+
+use std::path::Path;
+
+use stormpetrel_control::options::Options;
+use stormpetrel_control::record::{Meta, Path as Name, Record};
+use stormpetrel_control::registry::Settings;
+use stormpetrel_plant::disturbance::MOST;
+
+use super::document::{LONGEST, Node, Table, Value, parse, parse_set};
+use super::fault::{Fault, Faults, Place};
+use super::read::{Reader, unknown, wrong_type};
+use super::{ATTITUDE_LEVELS, BlockVisitor, Scenario, expect};
+
+/// A scenario file: one flight, or several variants of one.
+#[derive(Clone, Debug)]
+pub struct File {
+    /// One line on the file.
+    pub title: String,
+    /// What it shows.
+    pub about: String,
+    /// The flights, in the order of the file.
+    pub scenarios: Vec<Scenario>,
+}
+
+/// Most control ticks of one flight.
+const MOST_TICKS: f64 = 1e8;
+
+/// Reads a file from disk and lays the `--set` arguments over it.
+///
+/// # Errors
+/// Everything that is wrong with it, each with its place.
+pub fn load(path: &Path, sets: &[String]) -> Result<File, Faults> {
+    let shown = path.display().to_string();
+    let size = std::fs::metadata(path).map_or(0, |meta| meta.len());
+    if size > LONGEST as u64 {
+        return Err(Fault::general(format!(
+            "{shown}: {size} bytes: a scenario has at most {LONGEST}"
+        ))
+        .help("is this a scenario file?")
+        .into());
+    }
+    let text = std::fs::read_to_string(path).map_err(|error| {
+        let help = match error.kind() {
+            std::io::ErrorKind::NotFound => "`stormpetrel list scenarios` shows the shipped files",
+            std::io::ErrorKind::InvalidData => "a scenario is a text file in UTF-8",
+            _ => "check the path and its permissions",
+        };
+        Faults::from(Fault::general(format!("{shown}: {error}")).help(help))
+    })?;
+    let name = path.with_extension("").display().to_string();
+    let name = name.rsplit_once("scenarios/").map_or(name.as_str(), |(_, tail)| tail).to_owned();
+    load_text(&name, &shown, text, sets)
+}
+
+/// Reads a scenario from a text; `name` is the scenario's, `shown` the file's in messages.
+///
+/// # Errors
+/// Everything that is wrong with it, each with its place.
+pub fn load_text(name: &str, shown: &str, text: String, sets: &[String]) -> Result<File, Faults> {
+    let base = parse(shown, text)?;
+    let sets = sets.iter().map(|set| parse_set(set)).collect::<Result<Vec<_>, _>>()?;
+    let mut faults = Vec::new();
+    let mut scenarios = Vec::new();
+    let variants = variants(&base, &mut faults);
+    for variant in &variants {
+        let mut tree = Table(base.0.iter().filter(|e| e.key != "variant").cloned().collect());
+        if let Some(set) = variant.set {
+            tree.overlay(set);
+        }
+        for set in &sets {
+            tree.overlay(set);
+        }
+        let full = variant.name.map_or_else(|| name.to_owned(), |v| format!("{name}:{v}"));
+        match read_scenario(full, &tree, variant) {
+            Ok(scenario) => scenarios.push(scenario),
+            Err(found) => faults.extend(found),
+        }
+    }
+    // A fault of the base shows in every variant: say it once.
+    faults.sort_by_key(|f: &Fault| {
+        f.place.as_ref().map_or((String::new(), 0), |p| (p.source.name.clone(), p.span.start))
+    });
+    faults.dedup_by(|a, b| {
+        a.message == b.message
+            && a.place.as_ref().map(|p| &p.span) == b.place.as_ref().map(|p| &p.span)
+    });
+    Faults(faults).check()?;
+    let text = |key| match base.get(key) {
+        Some(Node { value: Value::Text(text), .. }) => text.clone(),
+        _ => String::new(),
+    };
+    Ok(File { title: text("title"), about: text("about"), scenarios })
+}
+
+/// A row of `[[variant]]`.
+#[derive(Default)]
+struct Variant<'a> {
+    name: Option<&'a str>,
+    title: Option<&'a str>,
+    set: Option<&'a Table>,
+    expect: Option<&'a Table>,
+}
+
+fn variants<'a>(base: &'a Table, faults: &mut Vec<Fault>) -> Vec<Variant<'a>> {
+    const KEYS: [&str; 4] = ["name", "title", "set", "expect"];
+    let Some(node) = base.get("variant") else { return vec![Variant::default()] };
+    let Value::List(items) = &node.value else {
+        faults.push(wrong_type(&node.place, "variant", &node.value, "").help("write [[variant]]"));
+        return Vec::new();
+    };
+    let mut rows: Vec<Variant<'a>> = Vec::new();
+    for item in items {
+        let Value::Table(table) = &item.value else {
+            faults.push(wrong_type(&item.place, "variant", &item.value, ""));
+            continue;
+        };
+        let mut row = Variant::default();
+        for entry in &table.0 {
+            match (entry.key.as_str(), &entry.node.value) {
+                ("name", Value::Text(text)) if is_name(text) => row.name = Some(text),
+                ("name", _) => faults.push(
+                    Fault::new(&entry.node.place, "`variant.name` must be a short name")
+                        .help("letters, digits, `-` and `_` only: it names a folder"),
+                ),
+                ("title", Value::Text(text)) => row.title = Some(text),
+                ("set", Value::Table(set)) => row.set = Some(set),
+                ("expect", Value::Table(expect)) => row.expect = Some(expect),
+                ("title", other) => {
+                    faults.push(wrong_type(&entry.node.place, "variant.title", other, "text"))
+                }
+                ("set" | "expect", other) => {
+                    let field = format!("variant.{}", entry.key);
+                    faults.push(wrong_type(&entry.node.place, &field, other, ""));
+                }
+                (key, _) => {
+                    faults.push(unknown(
+                        &entry.place,
+                        "field",
+                        &format!("variant.{key}"),
+                        key,
+                        &KEYS,
+                    ));
+                }
+            }
+        }
+        if row.name.is_none() && !table.0.iter().any(|e| e.key == "name") {
+            faults
+                .push(Fault::new(&item.place, "a variant has no name").help("add name = \"...\""));
+        }
+        if row.name.is_some() && rows.iter().any(|other| other.name == row.name) {
+            let name = row.name.unwrap_or_default();
+            faults.push(Fault::new(&item.place, format!("variant `{name}` stands twice")));
+        }
+        rows.push(row);
+    }
+    rows
+}
+
+fn is_name(text: &str) -> bool {
+    !text.is_empty()
+        && text.len() <= 64
+        && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_')
+}
+
+fn read_scenario(
+    name: String,
+    tree: &Table,
+    variant: &Variant<'_>,
+) -> Result<Scenario, Vec<Fault>> {
+    let mut scenario = Scenario::blank(name);
+    let mut loader =
+        Loader { tree, known: vec!["title", "about", "expect", "variant"], faults: Vec::new() };
+    scenario.blocks(&mut loader);
+    let Loader { known, mut faults, .. } = loader;
+    for entry in &tree.0 {
+        match (entry.key.as_str(), &entry.node.value) {
+            ("title", Value::Text(text)) => scenario.title.clone_from(text),
+            ("about", Value::Text(text)) => scenario.about.clone_from(text),
+            (key @ ("title" | "about"), other) => {
+                faults.push(wrong_type(&entry.node.place, key, other, "text"));
+            }
+            ("expect", Value::Table(table)) => {
+                expect::read(table, "", &mut scenario.expect, &mut faults);
+            }
+            ("expect", other) => faults.push(wrong_type(&entry.node.place, "expect", other, "")),
+            (key, _) if !known.contains(&key) => {
+                faults.push(unknown(&entry.place, "block", key, key, &known));
+            }
+            _ => {}
+        }
+    }
+    if let Some(title) = variant.title {
+        title.clone_into(&mut scenario.title);
+    }
+    if let Some(table) = variant.expect {
+        expect::read(table, "", &mut scenario.expect, &mut faults);
+    }
+    check_whole(&scenario, tree, &mut faults);
+    if faults.is_empty() { Ok(scenario) } else { Err(faults) }
+}
+
+/// Rules that look at more than one field.
+fn check_whole(scenario: &Scenario, tree: &Table, faults: &mut Vec<Fault>) {
+    let place = |block: &str| tree.get(block).map(|node| node.place.clone());
+    let mut say = |block: &str, message: String, help: &str| {
+        faults.push(Fault { place: place(block), message, help: Some(help.to_owned()) });
+    };
+    if !scenario.has_attitude() {
+        for block in ATTITUDE_LEVELS.into_iter().filter(|block| tree.get(block).is_some()) {
+            let message = format!("`{block}` is never asked: actuation is `thrust-vector`");
+            say(block, message, "take the block out, or choose another actuation");
+        }
+    }
+    let run = &scenario.run;
+    let ticks = run.duration / run.control_step;
+    if ticks > MOST_TICKS {
+        let message =
+            format!("`run`: {ticks:.3e} control steps: a flight has at most {MOST_TICKS:e}");
+        say("run", message, "shorten run.duration or lengthen run.control_step");
+    } else if (ticks - ticks.round()).abs() > 1e-6 * ticks || ticks < 1.0 {
+        let message = format!(
+            "`run.duration` = {} is not a multiple of `run.control_step` = {}",
+            run.duration, run.control_step
+        );
+        say("run", message, "a flight is a whole number of control steps");
+    }
+    if ticks / run.log_every > 5e6 {
+        let message = format!(
+            "`run.log_every` = {}: the log would have {:.1e} rows",
+            run.log_every,
+            ticks / run.log_every
+        );
+        say("run", message, "log at most 5e6 rows: raise run.log_every");
+    }
+    let inertia = scenario.vehicle.vehicle.inertia;
+    for (a, b, c) in [
+        (inertia.x, inertia.y, inertia.z),
+        (inertia.y, inertia.z, inertia.x),
+        (inertia.z, inertia.x, inertia.y),
+    ] {
+        if a > (b + c) * (1.0 + 1e-12) {
+            let message = format!(
+                "`vehicle.inertia` = [{}, {}, {}]: one moment exceeds the sum of the others",
+                inertia.x, inertia.y, inertia.z
+            );
+            say("vehicle", message, "no rigid body has such moments: check their order and units");
+        }
+    }
+    let vehicle = &scenario.vehicle.vehicle;
+    if vehicle.rotor_speed_min >= vehicle.rotor_speed_max {
+        let message = format!(
+            "`vehicle.rotor_speed_min` = {} is not below `vehicle.rotor_speed_max` = {}",
+            vehicle.rotor_speed_min, vehicle.rotor_speed_max
+        );
+        say("vehicle", message, "are the two swapped?");
+    }
+}
+
+struct Loader<'a> {
+    tree: &'a Table,
+    known: Vec<&'static str>,
+    faults: Vec<Fault>,
+}
+
+impl Loader<'_> {
+    fn table(&mut self, key: &str, node: &'_ Node) -> Option<Table> {
+        if let Value::Table(table) = &node.value {
+            return Some(table.clone());
+        }
+        self.faults.push(wrong_type(&node.place, key, &node.value, ""));
+        None
+    }
+
+    fn law<S: Settings>(&mut self, field: &str, place: &Place, table: &Table) -> Option<S> {
+        let names = S::NAMES.join(", ");
+        let Some(node) = table.get(S::KEY) else {
+            self.faults.push(
+                Fault::new(place, format!("`{field}` does not say its `{}`", S::KEY))
+                    .help(format!("add {} = \"...\"; known: {names}", S::KEY)),
+            );
+            return None;
+        };
+        let Value::Text(name) = &node.value else {
+            self.faults.push(wrong_type(
+                &node.place,
+                &format!("{field}.{}", S::KEY),
+                &node.value,
+                "text",
+            ));
+            return None;
+        };
+        let Some(mut settings) = S::named(name) else {
+            let shown = format!("{field}.{} = \"{name}\"", S::KEY);
+            self.faults.push(unknown(&node.place, "value", &shown, name, S::NAMES));
+            return None;
+        };
+        let mut reader = Reader::new(field, table);
+        reader.knows(S::KEY);
+        settings.settings(&mut reader);
+        self.faults.extend(reader.finish());
+        Some(settings)
+    }
+
+    fn required<S: Settings>(&self, key: &str) -> bool {
+        let point_mass = matches!(
+            self.tree.get("actuation").map(|n| &n.value),
+            Some(Value::Table(t)) if matches!(t.get("kind").map(|n| &n.value), Some(Value::Text(k)) if k == "thrust-vector")
+        );
+        key != "observer" && !(point_mass && ATTITUDE_LEVELS.contains(&key)) && !S::NAMES.is_empty()
+    }
+}
+
+impl BlockVisitor for Loader<'_> {
+    fn block<S: Settings>(&mut self, key: &'static str, _: &'static str, settings: &mut S) {
+        self.known.push(key);
+        let tree = self.tree;
+        let Some(node) = tree.get(key) else {
+            if self.required::<S>(key) {
+                let help = format!(
+                    "add {key} = {{ {} = \"{}\" }}; known: {}",
+                    S::KEY,
+                    S::NAMES.first().copied().unwrap_or_default(),
+                    S::NAMES.join(", ")
+                );
+                let place = tree
+                    .0
+                    .first()
+                    .map(|entry| Place { source: entry.place.source.clone(), span: 0..0 });
+                let message = format!("block `{key}` is missing");
+                self.faults.push(Fault { place, message, help: Some(help) });
+            }
+            return;
+        };
+        if let Some(table) = self.table(key, node)
+            && let Some(found) = self.law(key, &node.place, &table)
+        {
+            *settings = found;
+        }
+    }
+
+    fn list<S: Settings>(&mut self, key: &'static str, _: &'static str, settings: &mut Vec<S>) {
+        self.known.push(key);
+        let tree = self.tree;
+        let Some(node) = tree.get(key) else { return };
+        let Value::List(items) = &node.value else {
+            let help = format!("write [[{key}]] above its lines");
+            self.faults.push(
+                Fault::new(&node.place, format!("`{key}` must be a list of blocks")).help(help),
+            );
+            return;
+        };
+        if items.len() > MOST {
+            let message = format!("{} blocks `{key}`: at most {MOST} can be combined", items.len());
+            self.faults.push(Fault::new(&node.place, message));
+        }
+        for (i, item) in items.iter().enumerate() {
+            let field = format!("{key}.{i}");
+            if let Some(table) = self.table(&field, item)
+                && let Some(found) = self.law(&field, &item.place, &table)
+            {
+                settings.push(found);
+            }
+        }
+    }
+
+    fn plain<R: Record<f64>, O: Options>(
+        &mut self,
+        key: &'static str,
+        _: &'static str,
+        numbers: &mut R,
+        options: &mut O,
+    ) {
+        self.known.push(key);
+        let tree = self.tree;
+        let Some(node) = tree.get(key) else { return };
+        let Some(table) = self.table(key, node) else { return };
+        let mut reader = Reader::new(key, &table);
+        options.visit(&mut reader);
+        numbers.visit_mut(&Name::ROOT, &Meta::signal("", ""), &mut reader);
+        self.faults.extend(reader.finish());
+    }
+}

@@ -1,0 +1,252 @@
+//! From the tree to the settings: every number and option asks the file for its value.
+
+use stormpetrel_control::options::OptionVisitor;
+use stormpetrel_control::record::{Meta, Path, VisitorMut};
+
+use super::document::{Node, Table, Value};
+use super::fault::{Fault, Place};
+
+/// Reads one block: a table whose keys are numbers, vectors and options.
+pub struct Reader<'a> {
+    block: &'a str,
+    table: &'a Table,
+    known: Vec<&'static str>,
+    /// What was found wrong.
+    pub faults: Vec<Fault>,
+}
+
+impl<'a> Reader<'a> {
+    /// A reader of `table`, which stands under the name `block`.
+    pub fn new(block: &'a str, table: &'a Table) -> Self {
+        Self { block, table, known: Vec::new(), faults: Vec::new() }
+    }
+
+    /// Declares a key that somebody else reads.
+    pub fn knows(&mut self, key: &'static str) {
+        self.known.push(key);
+    }
+
+    /// Refuses every key that nobody asked for.
+    pub fn finish(mut self) -> Vec<Fault> {
+        for entry in &self.table.0 {
+            if !self.known.iter().any(|known| *known == entry.key) {
+                let field = format!("{}.{}", self.block, entry.key);
+                self.faults.push(unknown(&entry.place, "field", &field, &entry.key, &self.known));
+            }
+        }
+        self.faults.sort_by_key(|fault| fault.place.as_ref().map(|place| place.span.start));
+        self.faults
+    }
+
+    fn field(&self, key: &str) -> String {
+        format!("{}.{key}", self.block)
+    }
+
+    /// The node of `kp.x`: an own key, an item of a list, or the one number for all components.
+    fn find(&self, dotted: &str) -> Option<&'a Node> {
+        let mut parts = dotted.split('.');
+        let mut node = self.table.get(parts.next()?)?;
+        for part in parts {
+            node = match &node.value {
+                Value::Table(table) => table.get(part)?,
+                Value::List(items) => {
+                    items.get(["x", "y", "z"].iter().position(|name| *name == part)?)?
+                }
+                _ => node,
+            };
+        }
+        Some(node)
+    }
+}
+
+impl VisitorMut<f64> for Reader<'_> {
+    fn vector(&mut self, path: &Path<'_>, meta: &Meta, components: &'static [&'static str]) {
+        let key = path.name();
+        self.known.push(key);
+        let (field, shape) = (self.field(key), "give one number for all axes, or [x, y, z]");
+        match self.table.get(key) {
+            Some(Node { place, value: Value::List(items) }) if items.len() != components.len() => {
+                let message = format!("`{field}` has {} numbers: it takes 1 or 3", items.len());
+                self.faults.push(Fault::new(place, message).help(shape));
+            }
+            Some(Node { value: Value::Table(axes), .. }) => {
+                for entry in &axes.0 {
+                    if !components.contains(&entry.key.as_str()) {
+                        let name = format!("{field}.{}", entry.key);
+                        self.faults.push(unknown(
+                            &entry.place,
+                            "axis",
+                            &name,
+                            &entry.key,
+                            components,
+                        ));
+                    }
+                }
+            }
+            Some(Node { place, value: value @ (Value::Text(_) | Value::Flag(_)) }) => {
+                self.faults.push(wrong_type(place, &field, value, meta.unit).help(shape));
+            }
+            _ => {}
+        }
+    }
+
+    fn number(&mut self, path: &Path<'_>, meta: &Meta, value: &mut f64) {
+        let dotted = path.to_string();
+        if !dotted.contains('.') {
+            self.known.push(path.name());
+        }
+        let Some(node) = self.find(&dotted) else { return };
+        let field = self.field(&dotted);
+        match &node.value {
+            Value::Number(x, whole) => match refuse(&field, *x, *whole, meta) {
+                None => *value = *x,
+                Some((message, help)) => {
+                    let fault = Fault { help, ..Fault::new(&node.place, message) };
+                    // One number for three axes is one mistake.
+                    if self.faults.last().and_then(|f| f.place.as_ref()).map(|p| &p.span)
+                        != Some(&node.place.span)
+                    {
+                        self.faults.push(fault);
+                    }
+                }
+            },
+            Value::List(_) | Value::Table(_) if dotted.contains('.') => {}
+            Value::Text(_) | Value::Flag(_) if dotted.contains('.') && self.in_vector(&dotted) => {}
+            other => self.faults.push(wrong_type(&node.place, &field, other, meta.unit)),
+        }
+    }
+}
+
+impl Reader<'_> {
+    /// Whether the whole vector was refused already.
+    fn in_vector(&self, dotted: &str) -> bool {
+        let key = dotted.split('.').next().unwrap_or_default();
+        matches!(self.table.get(key), Some(Node { value: Value::Text(_) | Value::Flag(_), .. }))
+    }
+}
+
+impl OptionVisitor for Reader<'_> {
+    fn choice(
+        &mut self,
+        name: &'static str,
+        _: &'static str,
+        names: &'static [&'static str],
+        _: &'static [&'static str],
+        current: usize,
+    ) -> usize {
+        self.known.push(name);
+        let Some(node) = self.table.get(name) else { return current };
+        let given = match &node.value {
+            Value::Text(text) => text.clone(),
+            Value::Flag(flag) => flag.to_string(),
+            _ => {
+                let message = format!("`{}` must be one of {}", self.field(name), quoted(names));
+                self.faults.push(Fault::new(&node.place, message));
+                return current;
+            }
+        };
+        names.iter().position(|known| *known == given).unwrap_or_else(|| {
+            let field = self.field(name);
+            self.faults.push(unknown(
+                &node.place,
+                "value",
+                &format!("{field} = \"{given}\""),
+                &given,
+                names,
+            ));
+            current
+        })
+    }
+}
+
+/// Why a number cannot be taken, and what may have been meant.
+fn refuse(field: &str, x: f64, whole: bool, meta: &Meta) -> Option<(String, Option<String>)> {
+    let (lo, hi) = meta.range;
+    if !x.is_finite() {
+        return Some((format!("`{field}` = {x}: must be a finite number"), None));
+    }
+    if meta.unit == "count" && !whole && x.fract() != 0.0 {
+        return Some((format!("`{field}` = {x}: must be a whole number"), None));
+    }
+    if x >= lo && x <= hi {
+        return None;
+    }
+    let unit = if meta.unit == "1" { String::new() } else { format!(" {}", meta.unit) };
+    Some((format!("`{field}` = {x}: must lie in {lo} to {hi}{unit}"), slip(x, meta)))
+}
+
+/// The unit that was probably meant, if the number fits in it.
+fn slip(x: f64, meta: &Meta) -> Option<String> {
+    let (other, factor) = match meta.unit {
+        "kg" => ("grams", 1e-3),
+        "m" => ("millimetres", 1e-3),
+        "s" => ("milliseconds", 1e-3),
+        "rad" => ("degrees", std::f64::consts::PI / 180.0),
+        "rad/s" => ("revolutions per minute", std::f64::consts::PI / 30.0),
+        "kg m^2" => ("g m^2", 1e-3),
+        _ => return None,
+    };
+    let meant = x * factor;
+    let fits = meant >= meta.range.0 && meant <= meta.range.1;
+    fits.then(|| format!("{x} {other}? write {} ({})", round(meant), meta.unit))
+}
+
+/// Five significant digits, as a human would write them.
+fn round(x: f64) -> f64 {
+    format!("{x:.4e}").parse().unwrap_or(x)
+}
+
+/// A name that nobody knows, with the nearest one that somebody does.
+pub fn unknown(place: &Place, what: &str, shown: &str, name: &str, known: &[&str]) -> Fault {
+    let nearest = known
+        .iter()
+        .map(|candidate| (strsim::damerau_levenshtein(name, candidate), *candidate))
+        .filter(|(distance, candidate)| {
+            *distance <= 1 + candidate.len() / 3
+                || candidate.starts_with(name)
+                || name.starts_with(candidate)
+        })
+        .min();
+    let help = match nearest {
+        Some((_, candidate)) => format!("did you mean `{candidate}`? known: {}", known.join(", ")),
+        None if known.is_empty() => "this block has no settings".to_owned(),
+        None => format!("known: {}", known.join(", ")),
+    };
+    Fault::new(place, format!("unknown {what} `{shown}`")).help(help)
+}
+
+/// A value of the wrong kind.
+pub fn wrong_type(place: &Place, field: &str, value: &Value, unit: &str) -> Fault {
+    let got = match value {
+        Value::Number(..) => "a number",
+        Value::Text(_) => "a text",
+        Value::Flag(_) => "true or false",
+        Value::List(_) => "a list",
+        Value::Table(_) => "a table",
+    };
+    let want = match unit {
+        "" => "a table".to_owned(),
+        "text" => "a text".to_owned(),
+        "1" | "count" => "a number".to_owned(),
+        unit => format!("a number in {unit}"),
+    };
+    let fault = Fault::new(place, format!("`{field}` is {got}: must be {want}"));
+    match value {
+        Value::Text(text) if want.starts_with("a number") => {
+            let digits: String = text
+                .trim()
+                .chars()
+                .take_while(|c| c.is_ascii_digit() || "+-.eE".contains(*c))
+                .collect();
+            match digits.parse::<f64>() {
+                Ok(_) => fault.help(format!("write {digits} without quotes and without unit")),
+                Err(_) => fault,
+            }
+        }
+        _ => fault,
+    }
+}
+
+fn quoted(names: &[&str]) -> String {
+    names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,29 @@
+//! The scenarios that come with the program, so that it finds them wherever it runs.
+
+use crate::scenario::fault::Faults;
+use crate::scenario::{File, load_text};
+
+macro_rules! shipped {
+    ($($name:literal),* $(,)?) => {
+        /// Name and text of every shipped scenario file.
+        pub const SHIPPED: &[(&str, &str)] =
+            &[$(($name, include_str!(concat!("../../../scenarios/", $name, ".toml")))),*];
+    };
+}
+
+shipped![
+    "hover",
+    "first-flight",
+    "article/literal",
+    "article/consistent",
+    "article/rotors",
+    "article/stress",
+    "article/stress-rotors",
+    "article/translational",
+];
+
+/// A shipped scenario file by name; `None` where there is none of that name.
+pub fn shipped(name: &str) -> Option<Result<File, Faults>> {
+    let (name, text) = SHIPPED.iter().find(|(known, _)| *known == name)?;
+    Some(load_text(name, &format!("scenarios/{name}.toml"), (*text).to_owned(), &[]))
+}
