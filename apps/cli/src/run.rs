@@ -93,7 +93,7 @@ fn fly_into(folder: &Folder, prefix: &str, scenario: Scenario) -> std::io::Resul
 
 /// Says what the flights came to; fails where an expectation or a flight did.
 fn report(flights: &[Flown], out: &Path, common: &Common) -> Result<(), Failure> {
-    let bad = print_unmet(flights, common.json);
+    let bad = print_unmet(flights, common.json || common.quiet);
     if common.json {
         let mut all = Map::new();
         for flown in flights {
@@ -133,7 +133,7 @@ fn summary(flights: &[Flown]) -> Table {
 }
 
 /// Prints every expectation that is not met and every failure that must not be; whether there is one.
-pub fn print_unmet<'a>(flights: impl IntoIterator<Item = &'a Flown>, to_stderr_only: bool) -> bool {
+pub fn print_unmet<'a>(flights: impl IntoIterator<Item = &'a Flown>, faults_only: bool) -> bool {
     let mut bad = false;
     let mut expected = 0;
     for flown in flights {
@@ -154,7 +154,7 @@ pub fn print_unmet<'a>(flights: impl IntoIterator<Item = &'a Flown>, to_stderr_o
             );
         }
     }
-    if !bad && expected > 0 && !to_stderr_only {
+    if !bad && expected > 0 && !faults_only {
         terminal::say(&format!("all {expected} expectations met"));
     }
     bad

@@ -340,6 +340,14 @@ pub const OF_FLIGHT: [About; 12] = [
     },
 ];
 
+/// The flat name of every metric that a flight can have.
+pub fn names() -> Vec<String> {
+    let of = |signal: &About| OF_SIGNALS.map(|metric| metric.name.replace('*', signal.name));
+    let mut names: Vec<String> = SIGNALS.iter().flat_map(of).collect();
+    names.extend(OF_FLIGHT.map(|metric| metric.name.to_owned()));
+    names
+}
+
 /// Logarithmic histogram of one error signal: 64 bins an octave from 2^-30 to 2^10.
 #[derive(Clone, Debug)]
 struct Histogram {

@@ -11,6 +11,7 @@ mod figure;
 mod legend;
 mod page;
 mod path3d;
+#[cfg(feature = "png")]
 mod png;
 mod style;
 mod text;
@@ -19,6 +20,7 @@ mod ticks;
 pub use bars::{Bars, Group};
 pub use figure::{Figure, Limit, Panel, Series};
 pub use path3d::{Path, Scene};
+#[cfg(feature = "png")]
 pub use png::{PngError, png};
 
 /// How an axis maps values to length.

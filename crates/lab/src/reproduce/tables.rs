@@ -263,17 +263,16 @@ fn survival(story: &Story) -> Table {
         vec![
             format!("{plant}: {}", s.title),
             number(s.survived),
-            s.failed.map_or_else(|| "none".into(), number),
-            s.cause.to_owned(),
+            s.failed.map_or_else(|| "survives all".into(), |_| s.cause.to_owned()),
             s.observer_limit.map_or_else(|| "-".into(), number),
         ]
     });
     Table {
         title: "(d) The largest disturbance that each variant survives".into(),
         lead: format!("Force amplitude raised until the flight leaves 5 m or tilts past 90 deg. Beyond {limit:.2} N no upright flight can hold the force at all."),
-        head: heads(&["variant", "survives (N)", "fails at (N)", "why", "L valid to (N)"]),
+        head: heads(&["variant", "survives (N)", "then fails by", "L valid to (N)"]),
         rows: rows.collect(),
-        notes: vec!["L valid to: the amplitude up to which the observer's bound L covers the slope of the disturbance, L m/sqrt 2; above it the estimate cannot follow. Surviving more than the upright limit means that the flight was over or recovered before the tilt reached 90 deg.".into()],
+        notes: vec!["L valid to: the amplitude up to which the observer's bound L covers the slope of the disturbance, L m/sqrt 2; above it the estimate cannot follow.".into()],
     }
 }
 

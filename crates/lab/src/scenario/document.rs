@@ -111,11 +111,11 @@ fn overlay_items(below: &mut [Node], above: &Table) {
     }
 }
 
-/// The text as a tree.
+/// The text as a tree, and as the source that its places point into.
 ///
 /// # Errors
 /// A text that is too long or is not TOML, with the place where reading stopped.
-pub fn parse(name: &str, text: String) -> Result<Table, Faults> {
+pub fn parse(name: &str, text: String) -> Result<(Table, Arc<Source>), Faults> {
     if text.len() > LONGEST {
         let size = text.len();
         return Err(Fault::general(format!(
@@ -132,7 +132,8 @@ pub fn parse(name: &str, text: String) -> Result<Table, Faults> {
         let message = error.message().lines().next().unwrap_or_default().to_owned();
         Faults::from(Fault::new(&place, format!("not TOML: {message}")))
     })?;
-    read_table(&source, table.get_ref()).map_err(Faults::from)
+    let table = read_table(&source, table.get_ref())?;
+    Ok((table, source))
 }
 
 fn place(source: &Arc<Source>, span: Range<usize>) -> Place {
@@ -198,8 +199,9 @@ pub fn parse_set(argument: &str) -> Result<Table, Faults> {
             .help(example)
             .into());
     }
-    parse("--set", format!("{path} = {value}")).or_else(|_| {
+    let tree = parse("--set", format!("{path} = {value}")).or_else(|_| {
         let quoted = value.replace('\\', "\\\\").replace('"', "\\\"");
         parse("--set", format!("{path} = \"{quoted}\""))
-    })
+    });
+    tree.map(|(table, _)| table)
 }

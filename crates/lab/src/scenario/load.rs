@@ -1,14 +1,17 @@
 //! Reading a scenario file: base, variants, command-line overrides.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use stormpetrel_control::options::Options;
 use stormpetrel_control::record::{Meta, Path as Name, Record};
 use stormpetrel_control::registry::Settings;
 use stormpetrel_plant::disturbance::MOST;
 
+use crate::metric::names;
+
 use super::document::{LONGEST, Node, Table, Value, parse, parse_set};
-use super::fault::{Fault, Faults, Place};
+use super::fault::{Fault, Faults, Place, Source};
 use super::read::{Reader, unknown, wrong_type};
 use super::{ATTITUDE_LEVELS, BlockVisitor, Scenario, expect};
 
@@ -58,7 +61,7 @@ pub fn load(path: &Path, sets: &[String]) -> Result<File, Faults> {
 /// # Errors
 /// Everything that is wrong with it, each with its place.
 pub fn load_text(name: &str, shown: &str, text: String, sets: &[String]) -> Result<File, Faults> {
-    let base = parse(shown, text)?;
+    let (base, source) = parse(shown, text)?;
     let sets = sets.iter().map(|set| parse_set(set)).collect::<Result<Vec<_>, _>>()?;
     let mut faults = Vec::new();
     let mut scenarios = Vec::new();
@@ -72,7 +75,7 @@ pub fn load_text(name: &str, shown: &str, text: String, sets: &[String]) -> Resu
             tree.overlay(set);
         }
         let full = variant.name.map_or_else(|| name.to_owned(), |v| format!("{name}:{v}"));
-        match read_scenario(full, &tree, variant) {
+        match read_scenario(full, &tree, &source, variant) {
             Ok(scenario) => scenarios.push(scenario),
             Err(found) => faults.extend(found),
         }
@@ -166,11 +169,16 @@ fn is_name(text: &str) -> bool {
 fn read_scenario(
     name: String,
     tree: &Table,
+    source: &Arc<Source>,
     variant: &Variant<'_>,
 ) -> Result<Scenario, Vec<Fault>> {
     let mut scenario = Scenario::blank(name);
-    let mut loader =
-        Loader { tree, known: vec!["title", "about", "expect", "variant"], faults: Vec::new() };
+    let mut loader = Loader {
+        tree,
+        source,
+        known: vec!["title", "about", "expect", "variant"],
+        faults: Vec::new(),
+    };
     scenario.blocks(&mut loader);
     let Loader { known, mut faults, .. } = loader;
     for entry in &tree.0 {
@@ -196,8 +204,24 @@ fn read_scenario(
     if let Some(table) = variant.expect {
         expect::read(table, "", &mut scenario.expect, &mut faults);
     }
+    check_metrics(&scenario, &mut faults);
     check_whole(&scenario, tree, &mut faults);
     if faults.is_empty() { Ok(scenario) } else { Err(faults) }
+}
+
+/// Every expectation must name a metric that the flight has.
+fn check_metrics(scenario: &Scenario, faults: &mut Vec<Fault>) {
+    let mut known = names();
+    if !scenario.has_attitude() {
+        known.retain(|name| !["attitude.", "tilt.", "yaw."].iter().any(|s| name.starts_with(s)));
+    }
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    for expectation in &scenario.expect {
+        let name = expectation.metric.as_str();
+        if !known.contains(&name) {
+            faults.push(unknown(&expectation.place, "metric", name, name, &known));
+        }
+    }
 }
 
 /// Rules that look at more than one field.
@@ -259,6 +283,7 @@ fn check_whole(scenario: &Scenario, tree: &Table, faults: &mut Vec<Fault>) {
 
 struct Loader<'a> {
     tree: &'a Table,
+    source: &'a Arc<Source>,
     known: Vec<&'static str>,
     faults: Vec<Fault>,
 }
@@ -323,10 +348,7 @@ impl BlockVisitor for Loader<'_> {
                     S::NAMES.first().copied().unwrap_or_default(),
                     S::NAMES.join(", ")
                 );
-                let place = tree
-                    .0
-                    .first()
-                    .map(|entry| Place { source: entry.place.source.clone(), span: 0..0 });
+                let place = Some(Place { source: Arc::clone(self.source), span: 0..0 });
                 let message = format!("block `{key}` is missing");
                 self.faults.push(Fault { place, message, help: Some(help) });
             }

@@ -96,7 +96,11 @@ impl VisitorMut<f64> for Reader<'_> {
             self.known.push(path.name());
         }
         let Some(node) = self.find(&dotted) else { return };
-        let field = self.field(&dotted);
+        // One number for all axes is named as it is written.
+        let written = dotted.split('.').next().filter(|key| {
+            matches!(self.table.get(key), Some(Node { value: Value::Number(..), .. }))
+        });
+        let field = self.field(written.unwrap_or(&dotted));
         match &node.value {
             Value::Number(x, whole) => match refuse(&field, *x, *whole, meta) {
                 None => *value = *x,
@@ -207,10 +211,16 @@ pub fn unknown(place: &Place, what: &str, shown: &str, name: &str, known: &[&str
                 || name.starts_with(candidate)
         })
         .min();
+    // A long list of names hides the one that is meant.
+    let list = if known.len() > 20 {
+        "`stormpetrel list` shows all names".to_owned()
+    } else {
+        format!("known: {}", known.join(", "))
+    };
     let help = match nearest {
-        Some((_, candidate)) => format!("did you mean `{candidate}`? known: {}", known.join(", ")),
+        Some((_, candidate)) => format!("did you mean `{candidate}`? {list}"),
         None if known.is_empty() => "this block has no settings".to_owned(),
-        None => format!("known: {}", known.join(", ")),
+        None => list,
     };
     Fault::new(place, format!("unknown {what} `{shown}`")).help(help)
 }

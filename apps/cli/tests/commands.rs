@@ -1,0 +1,275 @@
+//! The commands as a user runs them: what they print, what they write, how they end.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn stormpetrel(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_stormpetrel"))
+        .args(arguments)
+        .current_dir(root())
+        .output()
+        .expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("UTF-8")
+}
+
+fn ends(output: &Output, code: i32) {
+    assert_eq!(
+        output.status.code(),
+        Some(code),
+        "{}{}",
+        text(&output.stdout),
+        text(&output.stderr)
+    );
+}
+
+/// Names of everything in a folder.
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> = fs::read_dir(folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+const HOVER: [&str; 3] = ["run", "scenarios/hover.toml", "--set"];
+
+#[test]
+fn run_writes_log_metrics_manifest_and_figures() {
+    let folder = TempDir::new().expect("a folder");
+    let out = folder.path().join("hover");
+    let out = out.to_str().expect("a path");
+    ends(&stormpetrel(&[HOVER[0], HOVER[1], HOVER[2], "run.duration=0.5", "--out", out]), 0);
+    let expected = [
+        "commands.png",
+        "commands.svg",
+        "disturbance.png",
+        "disturbance.svg",
+        "errors.png",
+        "errors.svg",
+        "flight.csv",
+        "manifest.json",
+        "metrics.json",
+        "path.png",
+        "path.svg",
+        "rotors.png",
+        "rotors.svg",
+    ];
+    assert_eq!(names(Path::new(out)), expected);
+    assert_eq!(names(folder.path()), ["hover"], "nothing half-written is left beside it");
+
+    let csv = fs::read_to_string(Path::new(out).join("flight.csv")).expect("a log");
+    let header: Vec<_> = csv.lines().next().expect("a header").split(',').collect();
+    for name in ["time", "position.x", "attitude.w", "disturbance.lumped.x", "estimate.force.x"] {
+        assert!(header.contains(&name), "{name} in {header:?}");
+    }
+    assert_eq!(csv.lines().count(), 1 + 500);
+    assert!(csv.lines().skip(1).all(|row| row.split(',').count() == header.len()));
+
+    let json = |name: &str| -> serde_json::Value {
+        let text = fs::read_to_string(Path::new(out).join(name)).expect("a file");
+        serde_json::from_str(&text).expect("JSON")
+    };
+    assert!(json("metrics.json")["position.iae"].is_number());
+    let manifest = json("manifest.json");
+    assert_eq!(manifest["columns"].as_array().map(Vec::len), Some(header.len()));
+    assert_eq!(manifest["resolved"]["run"]["duration"], 0.5);
+    assert_eq!(manifest["columns"][1]["unit"], "m");
+    assert_eq!(manifest["columns"][1]["frame"], "world");
+}
+
+#[test]
+fn the_log_is_the_same_bytes_each_time() {
+    let folder = TempDir::new().expect("a folder");
+    let fly = |name: &str| {
+        let out = folder.path().join(name);
+        let out = out.to_str().expect("a path");
+        let arguments = [
+            "run",
+            "scenarios/first-flight.toml",
+            "--set",
+            "run.duration=0.3",
+            "--quiet",
+            "--out",
+            out,
+        ];
+        // The late maximum of a short flight says nothing; the file is all that matters here.
+        ends(&stormpetrel(&arguments), 0);
+        fs::read(Path::new(out).join("flight.csv")).expect("a log")
+    };
+    assert!(fly("a") == fly("b"));
+}
+
+#[test]
+fn an_unmet_expectation_ends_with_one_and_says_which() {
+    let folder = TempDir::new().expect("a folder");
+    let out = folder.path().join("out");
+    let out = out.to_str().expect("a path");
+    let output = stormpetrel(&[
+        "run",
+        "scenarios/hover.toml",
+        "--set",
+        "run.duration=0.1",
+        "--set",
+        "start.offset=0.1",
+        "--out",
+        out,
+    ]);
+    ends(&output, 1);
+    assert!(text(&output.stderr).contains("hover: expectation failed"));
+    assert!(text(&output.stderr).contains("position.max must be at most 0.000000000001"));
+    assert!(Path::new(out).join("flight.csv").exists(), "the flight can be looked at");
+}
+
+#[test]
+fn a_failed_flight_ends_with_one_and_tells_the_cause() {
+    let folder = TempDir::new().expect("a folder");
+    let out = folder.path().join("out");
+    let out = out.to_str().expect("a path");
+    let output = stormpetrel(&[
+        "run",
+        "scenarios/hover.toml",
+        "--set",
+        "start.offset=[20, 0, 0]",
+        "--out",
+        out,
+    ]);
+    ends(&output, 1);
+    assert!(text(&output.stderr).contains("failed at 0.000 s: position error beyond its limit"));
+}
+
+#[test]
+fn bad_input_ends_with_two_and_writes_nothing() {
+    let folder = TempDir::new().expect("a folder");
+    let out = folder.path().join("out");
+    let out = out.to_str().expect("a path");
+    for set in [
+        "position.kp=-1",
+        "position.kpp=1",
+        "observer.law=homs",
+        "no-equals-sign",
+        "run.duration=inf",
+    ] {
+        ends(&stormpetrel(&[HOVER[0], HOVER[1], HOVER[2], set, "--out", out]), 2);
+    }
+    ends(&stormpetrel(&["run", "no-such-file.toml", "--out", out]), 2);
+    ends(&stormpetrel(&["run", "scenarios", "--out", out]), 2);
+    ends(
+        &stormpetrel(&[
+            "run",
+            "scenarios/article/consistent.toml",
+            "--variant",
+            "nobody",
+            "--out",
+            out,
+        ]),
+        2,
+    );
+    ends(&stormpetrel(&["fly"]), 2);
+    assert_eq!(names(folder.path()), [""; 0]);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_named() {
+    let folder = TempDir::new().expect("a folder");
+    let file = folder.path().join("file");
+    fs::write(&file, "mine").expect("a file");
+    let output =
+        stormpetrel(&["run", "scenarios/hover.toml", "--out", file.to_str().expect("a path")]);
+    ends(&output, 2);
+    assert!(text(&output.stderr).contains("exists and is not a folder"));
+    let below = file.join("out");
+    ends(
+        &stormpetrel(&["run", "scenarios/hover.toml", "--out", below.to_str().expect("a path")]),
+        2,
+    );
+    assert_eq!(fs::read_to_string(&file).expect("a file"), "mine");
+}
+
+#[test]
+fn strange_files_are_refused_without_a_crash() {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("strange.toml");
+    let shown = path.to_str().expect("a path");
+    let deep = format!("a = {}{}", "[".repeat(5000), "]".repeat(5000));
+    for content in
+        [vec![0xFF, 0xFE, 0x00], deep.into_bytes(), b"\x00".to_vec(), vec![b'#'; 2 << 20]]
+    {
+        fs::write(&path, content).expect("a file");
+        let output = stormpetrel(&["check", shown]);
+        ends(&output, 2);
+        assert!(text(&output.stderr).starts_with("error: "), "{}", text(&output.stderr));
+    }
+}
+
+#[test]
+fn check_reads_every_shipped_file() {
+    let output = stormpetrel(&["check", "scenarios/hover.toml", "scenarios/article/literal.toml"]);
+    ends(&output, 0);
+    assert!(text(&output.stdout).contains("scenarios/article/literal.toml: good, 17 flights"));
+}
+
+#[test]
+fn list_and_explain_know_everything_that_a_file_can_name() {
+    let output = stormpetrel(&["list", "--json"]);
+    ends(&output, 0);
+    let all: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let all = all.as_array().expect("a list");
+    assert!(all.len() > 40);
+    for entry in all.iter().filter(|entry| entry["kind"] != "scenarios") {
+        let name = format!(
+            "{}/{}",
+            entry["kind"].as_str().expect("a kind"),
+            entry["name"].as_str().expect("a name")
+        );
+        assert!(entry["summary"].as_str().is_some_and(|s| !s.is_empty()), "{name}");
+        ends(&stormpetrel(&["explain", &name]), 0);
+    }
+    let hosm = text(&stormpetrel(&["explain", "hosm"]).stdout);
+    for part in ["lambda2 L^(1/3)", "Levant", "lipschitz = 1.5 [m/s^3]", "\"doubled\""] {
+        assert!(hosm.contains(part), "{part} in {hosm}");
+    }
+    assert!(text(&stormpetrel(&["explain", "article"]).stdout).contains("3 (ccw)"));
+    assert!(text(&stormpetrel(&["explain", "position.iae"]).stdout).contains("sum |e| dt"));
+    ends(&stormpetrel(&["explain", "homs"]), 2);
+    ends(&stormpetrel(&["list", "lawz"]), 2);
+}
+
+#[test]
+fn every_help_shows_an_example() {
+    for command in ["reproduce", "run", "check", "list", "explain", "schema"] {
+        let output = stormpetrel(&[command, "--help"]);
+        ends(&output, 0);
+        let help = text(&output.stdout);
+        assert!(
+            help.contains("Example") && help.contains(&format!("stormpetrel {command}")),
+            "{help}"
+        );
+    }
+}
+
+#[test]
+fn quiet_is_quiet_and_json_is_json() {
+    let folder = TempDir::new().expect("a folder");
+    let out = folder.path().join("out");
+    let out = out.to_str().expect("a path");
+    let quiet =
+        stormpetrel(&[HOVER[0], HOVER[1], HOVER[2], "run.duration=0.1", "--quiet", "--out", out]);
+    ends(&quiet, 0);
+    assert!(quiet.stdout.is_empty() && quiet.stderr.is_empty());
+    let json =
+        stormpetrel(&[HOVER[0], HOVER[1], HOVER[2], "run.duration=0.1", "--json", "--out", out]);
+    ends(&json, 0);
+    let all: serde_json::Value = serde_json::from_slice(&json.stdout).expect("JSON");
+    assert!(all["hover"]["position.iae"].is_number(), "{all}");
+}
