@@ -2,7 +2,7 @@
 
 use crate::math::{Vec3, World};
 use crate::real::{Mask, Real};
-use crate::record::{Meta, Path, Record, RecordExt, Visitor, VisitorMut, blend, clamp};
+use crate::record::{Meta, Path, Record, Visitor, VisitorMut, blend, clamp};
 use crate::signals::{Applied, Measurement};
 
 /// A record that keeps its own type when combined with others of its kind.
@@ -15,6 +15,9 @@ pub trait Controller<T: Real>: Plain<T> {
     type Reference: Plain<T>;
     /// What it asks of the next level.
     type Command: Plain<T>;
+    /// Takes on what depends on `dt` alone; called before every [`Controller::update`]. The one place
+    /// where a law may branch on a number, if both branches give the same bits.
+    fn tune(&mut self, _dt: T) {}
     /// The command at this tick; `dt` is the time to the next one, in s.
     fn update(
         &mut self,
@@ -69,28 +72,62 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
         reference: &L::Reference,
         dt: T,
     ) -> L::Command {
-        let before = self.law;
-        let command = self.law.update(measurement, reference, dt);
-        let input = measurement.finite() & reference.finite() & good_step(dt);
-        let good = input & command.finite() & self.law.finite();
-        self.flag = T::zero();
-        let mut granted = clamp(&command, self.law.limit());
-        // Both branches give the same where all is well; the mending is skipped for speed only.
-        if !good.all() {
-            self.flag = T::select(good, T::zero(), T::one());
-            self.law = blend(input, &self.law, &before);
-            let mut fresh = self.law;
-            fresh.reset(&mended(measurement, &Measurement::default()));
-            self.law = mended(&self.law, &fresh);
-            granted = blend(good, &granted, &self.last);
-        }
-        self.last = granted;
-        granted
+        let input = good_input(measurement, dt) & reference.finite();
+        self.update_checked(input, measurement, reference, dt)
     }
 
-    /// [`Controller::reset`].
-    pub fn reset(&mut self, measurement: &Measurement<T>) {
+    /// [`Guarded::update`] where the caller knows already in which lanes the `input` is good.
+    #[inline(always)]
+    pub fn update_checked(
+        &mut self,
+        input: T::Mask,
+        measurement: &Measurement<T>,
+        reference: &L::Reference,
+        dt: T,
+    ) -> L::Command {
+        // Whether all is well decides only what need not be computed: the results are the same.
+        let before = if input.all() { None } else { Some(self.law) };
+        self.law.tune(dt);
+        let command = self.law.update(measurement, reference, dt);
+        let limit = self.law.limit();
+        let good = input & command.finite() & self.law.finite() & limit.is_finite();
+        self.flag = T::zero();
+        let granted = clamp(&command, limit);
+        if good.all() {
+            self.last = granted;
+        } else {
+            self.last = blend(good, &granted, &bounded(&self.last, limit));
+            self.mend(good, input, before, measurement);
+        }
+        self.last
+    }
+
+    /// Takes the state from before a bad input, and resets what of it is not finite.
+    #[cold]
+    #[inline(never)]
+    fn mend(
+        &mut self,
+        good: T::Mask,
+        input: T::Mask,
+        before: Option<L>,
+        measurement: &Measurement<T>,
+    ) {
+        self.flag = T::select(good, T::zero(), T::one());
+        if let Some(before) = before {
+            self.law = blend(input, &self.law, &before);
+        }
+        let mut fresh = self.law;
+        fresh.reset(&mended(measurement, &Measurement::default()));
+        self.law = mended(&self.law, &fresh);
+    }
+
+    /// [`Controller::reset`]; the default command is held until the first good one.
+    pub fn reset(&mut self, measurement: &Measurement<T>)
+    where
+        L::Command: Default,
+    {
         self.law.reset(&mended(measurement, &Measurement::default()));
+        self.last = L::Command::default();
         self.flag = T::zero();
     }
 }
@@ -127,24 +164,27 @@ impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
     /// [`Observer::correct`], total.
     #[inline(always)]
     pub fn correct(&mut self, measurement: &Measurement<T>, dt: T) {
+        self.correct_checked(good_input(measurement, dt), measurement, dt);
+    }
+
+    /// [`GuardedObserver::correct`] where the caller knows already in which lanes the `input` is
+    /// good.
+    #[inline(always)]
+    pub fn correct_checked(&mut self, input: T::Mask, measurement: &Measurement<T>, dt: T) {
         self.flag = T::zero();
-        let before = self.law;
+        let before = if input.all() { None } else { Some(self.law) };
         self.law.correct(measurement, dt);
-        let input = measurement.finite() & good_step(dt);
-        if input.all() {
-            self.last = *measurement;
-        } else {
-            self.last = blend(input, measurement, &self.last);
-        }
-        self.mend(input, &before);
+        self.last = if input.all() { *measurement } else { blend(input, measurement, &self.last) };
+        self.check(input, before);
     }
 
     /// [`Observer::advance`], total.
     #[inline(always)]
     pub fn advance(&mut self, applied: &Applied<T>, dt: T) {
-        let before = self.law;
+        let input = applied.finite() & good_step(dt);
+        let before = if input.all() { None } else { Some(self.law) };
         self.law.advance(applied, dt);
-        self.mend(applied.finite() & good_step(dt), &before);
+        self.check(input, before);
     }
 
     /// [`Observer::reset`].
@@ -155,22 +195,47 @@ impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
     }
 
     #[inline(always)]
-    fn mend(&mut self, input: T::Mask, before: &O) {
+    fn check(&mut self, input: T::Mask, before: Option<O>) {
         let good = input & self.law.finite();
         if !good.all() {
-            self.flag = T::select(good, self.flag, T::one());
-            self.law = blend(input, &self.law, before);
-            let mut fresh = self.law;
-            fresh.reset(&self.last);
-            self.law = mended(&self.law, &fresh);
+            self.mend(good, input, before);
         }
+    }
+
+    /// Takes the state from before a bad input, and resets what of it is not finite.
+    #[cold]
+    #[inline(never)]
+    fn mend(&mut self, good: T::Mask, input: T::Mask, before: Option<O>) {
+        self.flag = T::select(good, self.flag, T::one());
+        if let Some(before) = before {
+            self.law = blend(input, &self.law, &before);
+        }
+        let mut fresh = self.law;
+        fresh.reset(&self.last);
+        self.law = mended(&self.law, &fresh);
     }
 }
 
-/// Whether the step is a time that can pass.
+/// Whether a measurement is finite and `dt` a time that can pass, lane by lane.
+#[inline(always)]
+pub fn good_input<T: Real>(measurement: &Measurement<T>, dt: T) -> T::Mask {
+    measurement.finite() & good_step(dt)
+}
+
+/// Whether the step is a time that can pass. More than a second is a gap and not a step: an
+/// observer would slide through it at its full slope.
 #[inline(always)]
 fn good_step<T: Real>(dt: T) -> T::Mask {
-    T::zero().lt(dt) & dt.is_finite()
+    T::zero().lt(dt) & dt.le(T::one())
+}
+
+/// Number by number: the record's own within the limit; zero where even that is not finite.
+#[inline(always)]
+fn bounded<T: Real, R: Plain<T>>(record: &R, limit: T) -> R {
+    R::zip([record], &mut |[x]| {
+        let within = x.clamp(-limit, limit);
+        T::select(x.is_finite() & within.is_finite(), within, T::zero())
+    })
 }
 
 /// Number by number: the record's own where finite, else that of `spare`.
@@ -199,10 +264,35 @@ impl<T: Real, L: Record<T>, C: Record<T>> Record<T> for Guarded<T, L, C> {
         f: &mut impl FnMut([T; M]) -> U,
     ) -> Self::With<U> {
         Guarded {
-            law: L::zip(rows.map(|row| &row.law), f),
-            last: C::zip(rows.map(|row| &row.last), f),
-            flag: f(rows.map(|row| row.flag)),
+            law: L::zip(crate::record::each(rows, |row| &row.law), f),
+            last: C::zip(crate::record::each(rows, |row| &row.last), f),
+            flag: f(crate::record::each(rows, |row| row.flag)),
         }
+    }
+    #[inline(always)]
+    fn pick_lane(&self, i: usize) -> Self::With<T::Scalar> {
+        Guarded {
+            law: self.law.pick_lane(i),
+            last: self.last.pick_lane(i),
+            flag: self.flag.lane(i),
+        }
+    }
+    #[inline(always)]
+    fn put_mapped<U: Real<Scalar = T>>(
+        &self,
+        batch: &mut Self::With<U>,
+        i: usize,
+        f: &mut impl FnMut(T) -> T,
+    ) {
+        self.law.put_mapped(&mut batch.law, i, f);
+        self.last.put_mapped(&mut batch.last, i, f);
+        batch.flag.set_lane(i, f(self.flag));
+    }
+    #[inline(always)]
+    fn each_variable(&self, f: &mut impl FnMut(T)) {
+        self.law.each_variable(f);
+        self.last.each_variable(f);
+        f(self.flag);
     }
 }
 
@@ -226,25 +316,71 @@ impl<T: Real, L: Record<T>> Record<T> for GuardedObserver<T, L> {
         f: &mut impl FnMut([T; M]) -> U,
     ) -> Self::With<U> {
         GuardedObserver {
-            law: L::zip(rows.map(|row| &row.law), f),
-            last: Measurement::zip(rows.map(|row| &row.last), f),
-            flag: f(rows.map(|row| row.flag)),
+            law: L::zip(crate::record::each(rows, |row| &row.law), f),
+            last: Measurement::zip(crate::record::each(rows, |row| &row.last), f),
+            flag: f(crate::record::each(rows, |row| row.flag)),
         }
+    }
+    #[inline(always)]
+    fn pick_lane(&self, i: usize) -> Self::With<T::Scalar> {
+        GuardedObserver {
+            law: self.law.pick_lane(i),
+            last: self.last.pick_lane(i),
+            flag: self.flag.lane(i),
+        }
+    }
+    #[inline(always)]
+    fn put_mapped<U: Real<Scalar = T>>(
+        &self,
+        batch: &mut Self::With<U>,
+        i: usize,
+        f: &mut impl FnMut(T) -> T,
+    ) {
+        self.law.put_mapped(&mut batch.law, i, f);
+        self.last.put_mapped(&mut batch.last, i, f);
+        batch.flag.set_lane(i, f(self.flag));
+    }
+    #[inline(always)]
+    fn each_variable(&self, f: &mut impl FnMut(T)) {
+        self.law.each_variable(f);
+        self.last.each_variable(f);
+        f(self.flag);
     }
 }
 
 const FLAG: Meta = Meta::signal("1", "1 where the law held its last good value.");
 
 /// Implements [`Controller`] for a registry.
+///
+/// A law is run vehicle by vehicle: the loop vectoriser takes it as a whole, and only its scalar form
+/// is ever compiled. A law with larger parts that depend on an option loops over the lanes itself,
+/// inside its match; its registry says `whole`.
 #[macro_export]
 macro_rules! dispatch_controller {
-    ($name:ident [$($variant:ident)+] ($reference:ident => $command:ident)) => {
+    (@update each $laws:ident $measurement:ident $reference:ident $dt:ident) => {{
+        use $crate::record::RecordExt as _;
+        let mut commands = Self::Command::default();
+        for i in 0..T::LANES {
+            let mut law = $laws.pick(i);
+            let command = law.update(&$measurement.pick(i), &$reference.pick(i), $dt.lane(i));
+            command.put(&mut commands, i);
+            law.put($laws, i);
+        }
+        commands
+    }};
+    (@update whole $laws:ident $measurement:ident $reference:ident $dt:ident) => {
+        $laws.update($measurement, $reference, $dt)
+    };
+    ($name:ident [$($variant:ident)+] ($reference:ident => $command:ident, $how:ident)) => {
         impl<T: $crate::real::Real> $crate::controller::Controller<T> for $name<T> {
             type Reference = $crate::signals::$reference<T>;
             type Command = $crate::signals::$command<T>;
             #[inline(always)]
             fn update(&mut self, measurement: &$crate::signals::Measurement<T>, reference: &Self::Reference, dt: T) -> Self::Command {
-                match self { $( Self::$variant(law) => law.update(measurement, reference, dt), )+ }
+                match self { $( Self::$variant(laws) => {
+                    laws.tune(dt);
+                    $crate::dispatch_controller!(@update $how laws measurement reference dt)
+                } )+ }
             }
             #[inline(always)]
             fn reset(&mut self, measurement: &$crate::signals::Measurement<T>) {
@@ -273,7 +409,15 @@ macro_rules! dispatch_observer {
             }
             #[inline(always)]
             fn advance(&mut self, applied: &$crate::signals::Applied<T>, dt: T) {
-                match self { $( Self::$variant(law) => law.advance(applied, dt), )+ }
+                use $crate::record::RecordExt as _;
+                // Vehicle by vehicle: the loop vectoriser takes a law as a whole.
+                match self { $( Self::$variant(laws) => {
+                    for i in 0..T::LANES {
+                        let mut law = laws.pick(i);
+                        law.advance(&applied.pick(i), dt.lane(i));
+                        law.put(laws, i);
+                    }
+                } )+ }
             }
             #[inline(always)]
             fn reset(&mut self, measurement: &$crate::signals::Measurement<T>) {

@@ -129,7 +129,16 @@ impl<const N: usize> Mask for LaneMask<N> {
     fn lane(self, i: usize) -> bool {
         self.0[i % N] != 0
     }
+    #[inline(always)]
+    fn from_lanes(mut f: impl FnMut(usize) -> bool) -> Self {
+        let mut mask = [0; N];
+        for (i, lane) in mask.iter_mut().enumerate() {
+            *lane = word(f(i));
+        }
+        Self(mask)
+    }
 }
+
 /// A truth value as a word of ones or zeros, the form in which wide registers hold it.
 #[inline(always)]
 fn word(value: bool) -> u64 {
@@ -168,8 +177,12 @@ impl<T: Real<Mask = bool, Scalar = T>, const N: usize> Real for Lanes<T, N> {
         Self([T::lit(x); N])
     }
     #[inline(always)]
-    fn lane(self, i: usize) -> T {
+    fn lane(&self, i: usize) -> T {
         self.0[i % N]
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, i: usize, x: T) {
+        self.0[i % N] = x;
     }
     #[inline(always)]
     fn from_lanes(mut f: impl FnMut(usize) -> T) -> Self {

@@ -20,6 +20,8 @@ pub trait Mask:
     fn all(self) -> bool;
     /// The answer of lane `i`; lanes count from zero and wrap.
     fn lane(self, i: usize) -> bool;
+    /// Builds the answer lane by lane.
+    fn from_lanes(f: impl FnMut(usize) -> bool) -> Self;
 }
 
 impl Mask for bool {
@@ -34,6 +36,10 @@ impl Mask for bool {
     #[inline(always)]
     fn lane(self, _: usize) -> bool {
         self
+    }
+    #[inline(always)]
+    fn from_lanes(mut f: impl FnMut(usize) -> bool) -> Self {
+        f(0)
     }
 }
 
@@ -80,7 +86,9 @@ pub trait Real:
     /// A literal: every constant enters here, rounded to this precision.
     fn lit(x: f64) -> Self;
     /// The number in lane `i`; lanes count from zero and wrap.
-    fn lane(self, i: usize) -> Self::Scalar;
+    fn lane(&self, i: usize) -> Self::Scalar;
+    /// Replaces the number in lane `i`; lanes count from zero and wrap.
+    fn set_lane(&mut self, i: usize, x: Self::Scalar);
     /// Builds the number lane by lane: the door for anything that depends on data.
     fn from_lanes(f: impl FnMut(usize) -> Self::Scalar) -> Self;
     /// The value in double precision; lane zero where there are several.
@@ -243,8 +251,12 @@ macro_rules! float {
                 x as $float
             }
             #[inline(always)]
-            fn lane(self, _: usize) -> $float {
-                self
+            fn lane(&self, _: usize) -> $float {
+                *self
+            }
+            #[inline(always)]
+            fn set_lane(&mut self, _: usize, x: $float) {
+                *self = x;
             }
             #[inline(always)]
             fn from_lanes(mut f: impl FnMut(usize) -> $float) -> Self {

@@ -9,7 +9,7 @@ use core::fmt;
 use core::marker::PhantomData;
 
 use crate::lanes::Lanes;
-use crate::real::{Mask, Real};
+use crate::real::Real;
 
 /// What a declaration says of one number.
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +87,7 @@ pub trait VisitorMut<T> {
 /// A plain value made of numbers, all of the scalar `T`.
 pub trait Record<T: Real>: Copy {
     /// The same structure with another scalar.
-    type With<U: Real>: Record<U>;
+    type With<U: Real>: Record<U, With<T> = Self>;
 
     /// Walks over all numbers in the order of declaration.
     fn visit(&self, path: &Path<'_>, meta: &Meta, v: &mut impl Visitor<T>);
@@ -101,6 +101,55 @@ pub trait Record<T: Real>: Copy {
         rows: [&Self; N],
         f: &mut impl FnMut([T; N]) -> U,
     ) -> Self::With<U>;
+
+    /// Vehicle `i` of a batch.
+    fn pick_lane(&self, i: usize) -> Self::With<T::Scalar>;
+
+    /// Writes `f` of every number of this vehicle's record into lane `i` of a batch.
+    fn put_mapped<U: Real<Scalar = T>>(
+        &self,
+        batch: &mut Self::With<U>,
+        i: usize,
+        f: &mut impl FnMut(T) -> T,
+    );
+
+    /// Shows every number that may change in flight: all but those declared with a default, which
+    /// are settings.
+    fn each_variable(&self, f: &mut impl FnMut(T));
+
+    /// Whether every number that may change in flight is finite, lane by lane.
+    #[inline(always)]
+    fn finite(&self) -> T::Mask {
+        let mut sum = T::zero();
+        for i in 0..T::LANES {
+            // Zero times a number is zero; zero times an infinity or NaN is NaN, and the sum stays it.
+            let mut rest = T::Scalar::zero();
+            self.pick_lane(i).each_variable(&mut |x| rest += x * T::Scalar::zero());
+            sum.set_lane(i, rest);
+        }
+        sum.eq(T::zero())
+    }
+}
+
+/// A function of each item. The standard `map` on arrays is an iterator inside, which the compiler does
+/// not always inline; a call in the middle of the loop costs the wide registers.
+#[inline(always)]
+pub fn each<const N: usize, A: Copy, B: Copy>(items: [A; N], mut f: impl FnMut(A) -> B) -> [B; N] {
+    let mut out = [f(items[0]); N];
+    for i in 1..N {
+        out[i] = f(items[i]);
+    }
+    out
+}
+
+/// An array from its indices, for the same reason.
+#[inline(always)]
+pub fn from_index<const N: usize, B: Copy>(mut f: impl FnMut(usize) -> B) -> [B; N] {
+    let mut out = [f(0); N];
+    for i in 1..N {
+        out[i] = f(i);
+    }
+    out
 }
 
 /// What follows from [`Record::zip`] for every record.
@@ -123,18 +172,13 @@ pub trait RecordExt<T: Real>: Record<T> {
     /// Vehicle `i` of a batch.
     #[inline(always)]
     fn pick(&self, i: usize) -> Self::With<T::Scalar> {
-        Self::zip([self], &mut |[x]| x.lane(i))
+        self.pick_lane(i)
     }
 
-    /// Whether every number is finite, lane by lane.
+    /// Writes this vehicle's record into lane `i` of a batch of the same structure.
     #[inline(always)]
-    fn finite(&self) -> T::Mask {
-        let mut good = T::Mask::splat(true);
-        let _: Self::With<T> = Self::zip([self], &mut |[x]| {
-            good = good & x.is_finite();
-            x
-        });
-        good
+    fn put<U: Real<Scalar = T>>(&self, batch: &mut Self::With<U>, i: usize) {
+        self.put_mapped(batch, i, &mut |x| x);
     }
 }
 
@@ -148,8 +192,13 @@ pub fn blend<T: Real, R: Record<T, With<T> = R>>(mask: T::Mask, new: &R, old: &R
 
 /// Every number clamped to `-limit..=limit`.
 #[inline(always)]
-pub fn clamp<T: Real, R: Record<T, With<T> = R>>(record: &R, limit: T) -> R {
-    R::zip([record], &mut |[x]| x.clamp(-limit, limit))
+pub fn clamp<T: Real, R: Record<T>>(record: &R, limit: T) -> R {
+    let mut clamped = *record;
+    for i in 0..T::LANES {
+        let limit = limit.lane(i);
+        record.pick_lane(i).put_mapped::<T>(&mut clamped, i, &mut |x| x.clamp(-limit, limit));
+    }
+    clamped
 }
 
 /// The number is the smallest record.
@@ -165,7 +214,19 @@ impl<T: Real> Record<T> for T {
     }
     #[inline(always)]
     fn zip<const M: usize, U: Real>(rows: [&Self; M], f: &mut impl FnMut([T; M]) -> U) -> U {
-        f(rows.map(|x| *x))
+        f(each(rows, |x| *x))
+    }
+    #[inline(always)]
+    fn pick_lane(&self, i: usize) -> T::Scalar {
+        self.lane(i)
+    }
+    #[inline(always)]
+    fn put_mapped<U: Real<Scalar = T>>(&self, batch: &mut U, i: usize, f: &mut impl FnMut(T) -> T) {
+        batch.set_lane(i, f(*self));
+    }
+    #[inline(always)]
+    fn each_variable(&self, f: &mut impl FnMut(T)) {
+        f(*self);
     }
 }
 
@@ -204,7 +265,28 @@ impl<T: Real, R: Record<T>, const K: usize> Record<T> for [R; K] {
         rows: [&Self; M],
         f: &mut impl FnMut([T; M]) -> U,
     ) -> Self::With<U> {
-        core::array::from_fn(|k| R::zip(rows.map(|row| &row[k]), f))
+        from_index(|k| R::zip(each(rows, |row| &row[k]), f))
+    }
+    #[inline(always)]
+    fn pick_lane(&self, i: usize) -> Self::With<T::Scalar> {
+        from_index(|k| self[k].pick_lane(i))
+    }
+    #[inline(always)]
+    fn put_mapped<U: Real<Scalar = T>>(
+        &self,
+        batch: &mut Self::With<U>,
+        i: usize,
+        f: &mut impl FnMut(T) -> T,
+    ) {
+        for k in 0..K {
+            self[k].put_mapped(&mut batch[k], i, f);
+        }
+    }
+    #[inline(always)]
+    fn each_variable(&self, f: &mut impl FnMut(T)) {
+        for item in self {
+            item.each_variable(f);
+        }
     }
 }
 
@@ -225,6 +307,20 @@ impl<T: Real> Record<T> for Nothing<T> {
     ) -> Self::With<U> {
         Nothing(PhantomData)
     }
+    #[inline(always)]
+    fn pick_lane(&self, _: usize) -> Nothing<T::Scalar> {
+        Nothing(PhantomData)
+    }
+    #[inline(always)]
+    fn put_mapped<U: Real<Scalar = T>>(
+        &self,
+        _: &mut Nothing<U>,
+        _: usize,
+        _: &mut impl FnMut(T) -> T,
+    ) {
+    }
+    #[inline(always)]
+    fn each_variable(&self, _: &mut impl FnMut(T)) {}
 }
 
 /// Declares a record.
@@ -287,14 +383,34 @@ macro_rules! record {
             #[allow(unused_variables)]
             fn zip<const M: usize, U: $crate::real::Real>(rows: [&Self; M], f: &mut impl FnMut([T; M]) -> U) -> $name<U> {
                 $name {
-                    $( $f: $crate::record::Record::zip(rows.map(|row| &row.$f), f), )*
+                    $( $f: $crate::record::Record::zip($crate::record::each(rows, |row| &row.$f), f), )*
                     $( $( $o: rows[0].$o, )* )?
                 }
+            }
+            #[inline(always)]
+            #[allow(unused_variables)]
+            fn pick_lane(&self, i: usize) -> $name<T::Scalar> {
+                $name {
+                    $( $f: $crate::record::Record::pick_lane(&self.$f, i), )*
+                    $( $( $o: self.$o, )* )?
+                }
+            }
+            #[inline(always)]
+            #[allow(unused_variables)]
+            fn put_mapped<U: $crate::real::Real<Scalar = T>>(&self, batch: &mut $name<U>, i: usize, f: &mut impl FnMut(T) -> T) {
+                $( $crate::record::Record::put_mapped(&self.$f, &mut batch.$f, i, f); )*
+            }
+            #[inline(always)]
+            #[allow(unused_variables)]
+            fn each_variable(&self, f: &mut impl FnMut(T)) {
+                $( $crate::record!(@variable (&self.$f) f $($default)?); )*
             }
         }
     };
     (@default $ty:ty,) => { <$ty as Default>::default() };
     (@default $ty:ty, $default:literal) => { <$ty as $crate::record::Uniform>::uniform($default) };
+    (@variable ($field:expr) $visit:ident) => { $crate::record::Record::each_variable($field, $visit) };
+    (@variable ($field:expr) $visit:ident $default:literal) => {};
     (@meta [$($unit:tt)*] [$($doc:literal)+]) => {
         $crate::record::Meta::signal(stringify!($($unit)*), concat!($($doc),+))
     };

@@ -108,9 +108,30 @@ macro_rules! registry {
                 match rows[0] { $( Self::$variant(first) => {
                     // A batch has one structure; a stray row counts as the first.
                     #[allow(irrefutable_let_patterns)]
-                    let rows = rows.map(|row| if let Self::$variant(law) = row { law } else { first });
+                    let rows = $crate::record::each(rows, |row| if let Self::$variant(law) = row { law } else { first });
                     $name::$variant($crate::record::Record::zip(rows, f))
                 } )+ }
+            }
+            #[inline(always)]
+            fn pick_lane(&self, i: usize) -> $name<T::Scalar> {
+                match self { $( Self::$variant(law) => $name::$variant(law.pick_lane(i)), )+ }
+            }
+            #[inline(always)]
+            fn put_mapped<U: $crate::real::Real<Scalar = T>>(&self, batch: &mut $name<U>, i: usize, f: &mut impl FnMut(T) -> T) {
+                match (self, batch) {
+                    $( (Self::$variant(one), $name::$variant(batch)) => one.put_mapped(batch, i, f), )+
+                    // A batch has one structure; a stray row stays outside.
+                    #[allow(unreachable_patterns)]
+                    _ => {}
+                }
+            }
+            #[inline(always)]
+            fn each_variable(&self, f: &mut impl FnMut(T)) {
+                match self { $( Self::$variant(law) => law.each_variable(f), )+ }
+            }
+            #[inline(always)]
+            fn finite(&self) -> T::Mask {
+                match self { $( Self::$variant(law) => law.finite(), )+ }
             }
         }
 

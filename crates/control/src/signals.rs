@@ -114,10 +114,10 @@ record! {
     /// What the laws believe of the vehicle; the plant may differ.
     pub struct Model {
         /// Mass.
-        mass: T [kg] = 0.625, in 1e-3 => 1e3;
+        mass: T [kg] = 0.625, in 1e-3 => 100.0;
         /// Gravitational acceleration.
         gravity: T [m/s^2] = 9.8, in 0.0 => 30.0;
         /// Principal moments of inertia about the body axes.
-        inertia: Vec3<T, Body> [kg m^2] = 2.6e-3, in 1e-7 => 1e3;
+        inertia: Vec3<T, Body> [kg m^2] = 2.6e-3, in 1e-7 => 10.0;
     }
 }

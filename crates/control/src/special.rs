@@ -150,7 +150,7 @@ pub fn sin_cos<T: Real>(x: T) -> (T, T) {
     let inside = x.abs().le(T::lit(T::Precision::ANGLE_LIMIT));
     let x = T::select(inside, x, T::zero());
     let n = (x * T::lit(FRAC_2_PI)).round();
-    let [p, q, r, s] = T::Precision::HALF_PI.map(|part| n * T::lit(part));
+    let [p, q, r, s] = crate::record::each(T::Precision::HALF_PI, |part| n * T::lit(part));
     let (rest, lost_q) = less(x - p, q);
     let (rest, lost_r) = less(rest, r);
     let (hi, lo) = less(rest, s - (lost_q + lost_r));
@@ -246,7 +246,7 @@ pub fn exp<T: Real>(x: T) -> T {
     let [lowest, highest] = T::Precision::EXP_RANGE.map(T::lit);
     let x = x.clamp(lowest, highest);
     let n = (x * T::lit(LOG2_E)).round();
-    let [p, q] = T::Precision::LN_2.map(|part| n * T::lit(part));
+    let [p, q] = crate::record::each(T::Precision::LN_2, |part| n * T::lit(part));
     let (r, lost) = less(x - p, q);
     (T::one() + (r + (r * r * polynomial(r, EXP) + lost))) * n.power_of_two()
 }
@@ -264,7 +264,7 @@ pub fn ln<T: Real>(x: T) -> T {
     let s = f / (T::lit(2.0) + f);
     let z = s * s;
     let half_square = f * f.half();
-    let [p, q] = T::Precision::LN_2.map(|part| e * T::lit(part));
+    let [p, q] = crate::record::each(T::Precision::LN_2, |part| e * T::lit(part));
     p - ((half_square - (s * (half_square + z * polynomial(z, LN)) + q)) - f)
 }
 

@@ -2,13 +2,14 @@
 
 use crate::attitude::AttitudeLaw;
 use crate::attitude_reference::AttitudeReference;
-use crate::controller::{Guarded, GuardedObserver};
+use crate::controller::{Guarded, GuardedObserver, good_input};
 use crate::math::{Vec3, World};
 use crate::observer::Observer;
 use crate::position::Position;
 use crate::rate::RateLaw;
 use crate::real::Real;
 use crate::record;
+use crate::record::Record as _;
 use crate::signals::{Applied, Attitude, Measurement, Rate, Thrust, Trajectory, Wrench};
 
 /// Down to which level the stack commands.
@@ -91,15 +92,18 @@ impl<T: Real> Stack<T> {
         trajectory: &Trajectory<T>,
         dt: T,
     ) -> Command<T> {
-        self.observer.correct(measurement, dt);
-        let mut thrust = self.position.update(measurement, trajectory, dt);
+        let input = good_input(measurement, dt);
+        self.observer.correct_checked(input, measurement, dt);
+        let position = input & trajectory.finite();
+        let mut thrust = self.position.update_checked(position, measurement, trajectory, dt);
         thrust.force -= self.observer.estimate();
         if self.exit == Exit::Thrust {
             return Command { thrust, ..Command::default() };
         }
-        let attitude = self.attitude_reference.update(measurement, &thrust, dt);
-        let rate = self.attitude.update(measurement, &attitude, dt);
-        let wrench = self.rate.update(measurement, &rate, dt);
+        // What a guard or the observer grants is finite: the levels below need not ask again.
+        let attitude = self.attitude_reference.update_checked(input, measurement, &thrust, dt);
+        let rate = self.attitude.update_checked(input, measurement, &attitude, dt);
+        let wrench = self.rate.update_checked(input, measurement, &rate, dt);
         Command { thrust, attitude, rate, wrench }
     }
 

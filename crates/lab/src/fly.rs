@@ -3,6 +3,7 @@
 use stormpetrel_control::lanes::Lanes;
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record::RecordExt;
+use stormpetrel_plant::dispatch::{Width, Work};
 use stormpetrel_plant::flight::{Cause, Flight, Tick};
 
 use crate::metric::{Distribution, Errors, Setting, Sums, metrics};
@@ -71,6 +72,11 @@ fn failure(cause: f64, flown: f64, dt: f64) -> Option<Failure> {
 
 /// Flies one scenario; `each` sees every tick with its errors.
 pub fn fly(scenario: &Scenario, mut each: impl FnMut(&Tick<f64>, &Errors<f64>)) -> Outcome {
+    fly_seen(scenario, &mut each)
+}
+
+/// The whole loop is inlined here: once for all callers, not once for each.
+fn fly_seen(scenario: &Scenario, each: &mut dyn FnMut(&Tick<f64>, &Errors<f64>)) -> Outcome {
     let mut flight = scenario.flight();
     let mut distribution = Distribution::new(scenario.has_attitude());
     let setting = setting(scenario);
@@ -87,48 +93,82 @@ pub fn fly(scenario: &Scenario, mut each: impl FnMut(&Tick<f64>, &Errors<f64>)) 
     }
 }
 
-/// Flies up to eight scenarios of one structure side by side; each outcome has the bits of a single
-/// flight. Scenarios of another structure than the first are flown alone.
+/// Flies scenarios eight side by side, on the widest registers of the machine; each outcome has the
+/// bits of a single flight. Neighbours of one structure share a batch.
 pub fn fly_batch(scenarios: &[Scenario]) -> Vec<Outcome> {
+    fly_batch_at(scenarios, Width::widest())
+}
+
+/// [`fly_batch`] at a given width.
+pub fn fly_batch_at(scenarios: &[Scenario], width: Width) -> Vec<Outcome> {
     let mut outcomes = Vec::with_capacity(scenarios.len());
     for group in scenarios.chunk_by(|a, b| a.structure() == b.structure()) {
         for batch in group.chunks(LANES) {
             match batch {
                 [alone] => outcomes.push(fly(alone, |_, _| {})),
-                batch => outcomes.extend(fly_lanes(batch)),
+                batch => outcomes.extend(width.run(Batch::new(batch))),
             }
         }
     }
     outcomes
 }
 
-fn fly_lanes(batch: &[Scenario]) -> Vec<Outcome> {
-    // Missing vehicles are doubles of the last: their results are dropped.
-    let last = batch.len() - 1;
-    let row = |i: usize| &batch[if i < last { i } else { last }];
-    let flights: [Flight<f64>; LANES] = std::array::from_fn(|i| row(i).flight());
-    let mut lanes: Flight<Lanes<f64, LANES>> =
-        RecordExt::<f64>::gather(std::array::from_fn(|i| &flights[i]));
-    let mut setting: Setting<Lanes<f64, LANES>> = setting(row(0));
-    setting.late = Lanes(std::array::from_fn(|i| row(i).run.late));
-    setting.dt = Lanes(std::array::from_fn(|i| row(i).run.control_step));
-    setting.gravity = Lanes(std::array::from_fn(|i| row(i).model.gravity));
-    let mut distributions = vec![Distribution::new(setting.has_attitude); batch.len()];
-    let sums = run(&mut lanes, row(0).ticks(), &setting, |_, errors, alive| {
-        let mut any = false;
-        for (i, distribution) in distributions.iter_mut().enumerate() {
-            if alive.lane(i) > 0.0 {
-                distribution.push(&errors.pick(i));
-                any = true;
-            }
+/// Up to eight flights of one structure, side by side.
+struct Batch {
+    count: usize,
+    ticks: u64,
+    steps: [f64; LANES],
+    setting: Setting<Lanes<f64, LANES>>,
+    flight: Flight<Lanes<f64, LANES>>,
+    distributions: Vec<Distribution>,
+}
+
+impl Batch {
+    fn new(batch: &[Scenario]) -> Self {
+        // Missing vehicles are doubles of the last: their results are dropped.
+        let last = batch.len() - 1;
+        let row = |i: usize| &batch[if i < last { i } else { last }];
+        let flights: [Flight<f64>; LANES] = std::array::from_fn(|i| row(i).flight());
+        let each = |f: fn(&Scenario) -> f64| Lanes(std::array::from_fn(|i| f(row(i))));
+        let setting = Setting {
+            dt: each(|s| s.run.control_step),
+            late: each(|s| s.run.late),
+            gravity: each(|s| s.model.gravity),
+            has_attitude: row(0).has_attitude(),
+        };
+        Self {
+            count: batch.len(),
+            ticks: row(0).ticks(),
+            steps: setting.dt.0,
+            setting,
+            flight: RecordExt::<f64>::gather(std::array::from_fn(|i| &flights[i])),
+            distributions: vec![Distribution::new(setting.has_attitude); batch.len()],
         }
-        any
-    });
-    let outcome = |(i, distribution): (usize, &Distribution)| Outcome {
-        metrics: metrics(&sums.pick(i), distribution),
-        failure: failure(lanes.cause.lane(i), lanes.flown.lane(i), row(i).run.control_step),
-    };
-    distributions.iter().enumerate().map(outcome).collect()
+    }
+}
+
+impl Work for Batch {
+    type Output = Vec<Outcome>;
+
+    #[inline(always)]
+    fn run(self) -> Vec<Outcome> {
+        let Self { count, ticks, steps, setting, mut flight, mut distributions } = self;
+        let sums = run(&mut flight, ticks, &setting, |_, errors, alive| {
+            let mut any = false;
+            for (i, distribution) in distributions.iter_mut().enumerate() {
+                if alive.lane(i) > 0.0 {
+                    distribution.push(&errors.pick(i));
+                    any = true;
+                }
+            }
+            any
+        });
+        let outcome = |i: usize| Outcome {
+            metrics: metrics(&sums.pick(i), &distributions[i]),
+            failure: failure(flight.cause.lane(i), flight.flown.lane(i), steps[i]),
+        };
+        (0..count).map(outcome).collect()
+    }
 }
 
 /// Maps over the items on all cores, in order.

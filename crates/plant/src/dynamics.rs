@@ -12,8 +12,9 @@
 use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
+use stormpetrel_control::record::RecordExt as _;
 
-use crate::actuation::{Actuate, Actuation};
+use crate::actuation::Actuate;
 use crate::state::{Derivative, State};
 use crate::vehicle::Vehicle;
 
@@ -37,26 +38,34 @@ pub fn acceleration<T: Real>(
     thrust_per_mass - Vec3::up(gravity) + push_per_mass
 }
 
-/// What stays constant over a control tick, prepared once.
-#[derive(Clone, Copy, Debug)]
-pub struct Held<T> {
-    /// Disturbance force per mass, m/s^2.
-    pub push_per_mass: Vec3<T, World>,
-    /// Disturbance torque, N m.
-    pub torque: Vec3<T, Body>,
-    /// Reciprocal moments of inertia, 1/(kg m^2).
-    pub per_inertia: Vec3<T, Body>,
+record! {
+    /// What stays constant over a control tick, prepared once.
+    pub struct Held {
+        /// Disturbance force per mass.
+        push_per_mass: Vec3<T, World> [m/s^2];
+        /// Disturbance torque.
+        torque: Vec3<T, Body> [N m];
+        /// Reciprocal moments of inertia.
+        per_inertia: Vec3<T, Body> [1/(kg m^2)];
+    }
 }
 
 impl<T: Real> Held<T> {
     /// For this vehicle and push.
     #[inline(always)]
     pub fn new(vehicle: &Vehicle<T>, push: &Push<T>) -> Self {
-        Self {
-            push_per_mass: push.force * (T::one() / vehicle.mass),
-            torque: push.torque,
-            per_inertia: vehicle.inertia.map(|i| T::one() / i),
+        let mut held = Self::default();
+        for i in 0..T::LANES {
+            let (vehicle, push) = (vehicle.pick(i), push.pick(i));
+            let one = T::Scalar::one();
+            Held {
+                push_per_mass: push.force * (one / vehicle.mass),
+                torque: push.torque,
+                per_inertia: vehicle.inertia.map(|inertia| one / inertia),
+            }
+            .put(&mut held, i);
         }
+        held
     }
 }
 
@@ -65,7 +74,7 @@ impl<T: Real> Held<T> {
 pub fn derivative<T: Real>(
     state: &State<T>,
     vehicle: &Vehicle<T>,
-    actuation: &Actuation<T>,
+    actuation: &impl Actuate<T>,
     held: &Held<T>,
 ) -> Derivative<T> {
     let omega = state.rate;
@@ -97,7 +106,7 @@ pub fn runge_kutta<T: Real>(
     state: &State<T>,
     h: T,
     vehicle: &Vehicle<T>,
-    actuation: &Actuation<T>,
+    actuation: &impl Actuate<T>,
     held: &Held<T>,
 ) -> State<T> {
     let slope = |at: &State<T>| derivative(at, vehicle, actuation, held);

@@ -3,13 +3,13 @@
 use stormpetrel_control::math::{Body, Rotation, Vec3, World};
 use stormpetrel_control::real::{Mask, Real};
 use stormpetrel_control::record;
-use stormpetrel_control::record::{RecordExt, blend};
+use stormpetrel_control::record::{Record as _, RecordExt as _, blend};
 use stormpetrel_control::signals::{Applied, Measurement, Model, Trajectory, Wrench};
 use stormpetrel_control::stack::{Command, Stack};
 
 use crate::actuation::{Actuate, Actuation};
-use crate::disturbance::{Disturb, Disturbance, MOST};
-use crate::dynamics::{Held, Push, acceleration, runge_kutta};
+use crate::disturbance::{Disturbance, MOST};
+use crate::dynamics::{Held, Push, acceleration};
 use crate::reference::{Refer, Reference};
 use crate::state::State;
 use crate::vehicle::Vehicle;
@@ -152,6 +152,7 @@ impl<T: Real> Flight<T> {
     /// Puts the vehicle at `state` and lets every law begin there.
     pub fn start(&mut self, state: State<T>) {
         self.state = state;
+        self.actuation.reset();
         self.unallocated = Wrench::default();
         (self.alive, self.cause, self.flown) = (T::one(), T::zero(), T::zero());
         self.tick = 0;
@@ -162,10 +163,7 @@ impl<T: Real> Flight<T> {
     #[inline(always)]
     fn measure(&self) -> Measurement<T> {
         let State { position, velocity, attitude, rate, .. } = self.state;
-        let achieved = Wrench {
-            thrust: self.actuation.thrust(&self.state),
-            torque: self.actuation.torque(&self.state),
-        };
+        let achieved = self.actuation.wrench(&self.state);
         Measurement { position, velocity, attitude, rate, achieved, unallocated: self.unallocated }
     }
 
@@ -182,9 +180,9 @@ impl<T: Real> Flight<T> {
         let reference = self.reference.at(time);
         let mut push = Push::default();
         for source in &self.disturbance {
-            let one = source.at(time, &self.vehicle);
-            push.force += one.force;
-            push.torque += one.torque;
+            if !matches!(source, Disturbance::Calm(_)) {
+                source.add(&mut push, time, &self.vehicle);
+            }
         }
         let estimate = self.stack.estimate() * self.model.mass;
         let command = self.stack.update(&self.measure(), &reference, dt);
@@ -199,10 +197,7 @@ impl<T: Real> Flight<T> {
             rotor_speed,
             reference,
             command,
-            applied: Wrench {
-                thrust: self.actuation.thrust(&self.state),
-                torque: self.actuation.torque(&self.state),
-            },
+            applied: self.actuation.wrench(&self.state),
             disturbance: Disturbed {
                 force: push.force,
                 torque: push.torque,
@@ -218,20 +213,32 @@ impl<T: Real> Flight<T> {
     #[inline(always)]
     fn lumped(&self, push: &Push<T>) -> Vec3<T, World> {
         let thrust = self.actuation.thrust_per_mass(&self.state, &self.vehicle);
-        let per_mass = push.force * (T::one() / self.vehicle.mass);
-        let a = acceleration(thrust, per_mass, self.vehicle.gravity);
-        (a + Vec3::up(self.model.gravity)) * self.model.mass - thrust * self.vehicle.mass
+        let mut lumped = Vec3::zero();
+        for i in 0..T::LANES {
+            let (thrust, push) = (thrust.pick(i), push.pick(i));
+            let (vehicle, model) = (self.vehicle.pick(i), self.model.pick(i));
+            let per_mass = push.force * (T::Scalar::one() / vehicle.mass);
+            let a = acceleration(thrust, per_mass, vehicle.gravity);
+            let lump = (a + Vec3::up(model.gravity)) * model.mass - thrust * vehicle.mass;
+            lump.put(&mut lumped, i);
+        }
+        lumped
     }
 
     /// What drove the vehicle, as an observer may know it: the law's own mass and gravity.
     #[inline(always)]
     fn applied(&self, command: &Command<T>) -> Applied<T> {
-        let weight = Vec3::up(self.model.gravity);
         let thrust = self.actuation.thrust_per_mass(&self.state, &self.vehicle);
-        Applied {
-            commanded: command.thrust.force - weight,
-            measured: thrust * (self.vehicle.mass / self.model.mass) - weight,
+        let mut applied = Applied::default();
+        for i in 0..T::LANES {
+            let (force, thrust) = (command.thrust.force.pick(i), thrust.pick(i));
+            let (vehicle, model) = (self.vehicle.pick(i), self.model.pick(i));
+            let weight = Vec3::up(model.gravity);
+            let (commanded, measured) =
+                (force - weight, thrust * (vehicle.mass / model.mass) - weight);
+            Applied { commanded, measured }.put(&mut applied, i);
         }
+        applied
     }
 
     /// Observer and plant over the tick that `decide` began. A failed flight stands still.
@@ -247,12 +254,11 @@ impl<T: Real> Flight<T> {
         let h = dt * T::lit(1.0 / f64::from(self.substeps));
         let mut state = self.state;
         for _ in 0..self.substeps {
-            self.actuation.pass(h);
-            state = runge_kutta(&state, h, &self.vehicle, &self.actuation, &held);
+            state = self.actuation.step(&state, h, &self.vehicle, &held);
         }
         let finite = state.finite();
-        let alive = T::zero().lt(self.alive);
-        self.state = blend(finite & alive, &state, &self.state);
+        let moves = finite & T::zero().lt(self.alive);
+        self.state = if moves.all() { state } else { blend(moves, &state, &self.state) };
         self.fail(!finite, 4.0);
         self.flown += self.alive;
         self.tick += 1;
@@ -262,7 +268,11 @@ impl<T: Real> Flight<T> {
     #[inline(always)]
     fn judge(&mut self, tick: &Tick<T>) {
         let Limits { position_error, tilt_deg, ground } = self.limits;
-        let error = (tick.position - tick.reference.position).norm();
+        let mut error = T::zero();
+        for i in 0..T::LANES {
+            let e = tick.position.pick(i) - tick.reference.position.pick(i);
+            error.set_lane(i, e.norm());
+        }
         self.fail(position_error.lt(error), 1.0);
         // Only where a tilt limit is set; 180 deg allows any attitude.
         if !T::lit(180.0).le(tilt_deg).all() {
@@ -274,6 +284,10 @@ impl<T: Real> Flight<T> {
 
     #[inline(always)]
     fn fail(&mut self, failed: T::Mask, code: f64) {
+        // The usual case; what follows changes nothing then.
+        if (!failed).all() {
+            return;
+        }
         let now = failed & T::zero().lt(self.alive);
         self.alive = T::select(now, T::zero(), self.alive);
         self.cause = T::select(now, T::lit(code), self.cause);

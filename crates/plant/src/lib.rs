@@ -6,6 +6,8 @@
 #![cfg_attr(not(any(feature = "std", test)), no_std)]
 
 pub mod actuation;
+#[cfg(feature = "std")]
+pub mod dispatch;
 pub mod disturbance;
 pub mod dynamics;
 pub mod flight;

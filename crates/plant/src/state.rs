@@ -47,7 +47,9 @@ impl<T: Real> State<T> {
             velocity: self.velocity + d.velocity * h,
             attitude: Rotation::from_quaternion(q.w + w * h, q.x + x * h, q.y + y * h, q.z + z * h),
             rate: self.rate + d.rate * h,
-            rotor_speed: core::array::from_fn(|i| self.rotor_speed[i] + d.rotor_speed[i] * h),
+            rotor_speed: stormpetrel_control::record::from_index(|i| {
+                self.rotor_speed[i] + d.rotor_speed[i] * h
+            }),
         }
     }
 }

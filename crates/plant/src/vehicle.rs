@@ -12,23 +12,23 @@ record! {
     /// Physical constants of a vehicle with four rotors; layout `article-plus`.
     pub struct Vehicle {
         /// Mass.
-        mass: T [kg] = 0.625, in 1e-3 => 1e3;
+        mass: T [kg] = 0.625, in 1e-3 => 100.0;
         /// Principal moments of inertia about the body axes.
-        inertia: Vec3<T, Body> [kg m^2] = 2.6e-3, in 1e-7 => 1e3;
+        inertia: Vec3<T, Body> [kg m^2] = 2.6e-3, in 1e-7 => 10.0;
         /// Gravitational acceleration where it flies.
         gravity: T [m/s^2] = 9.8, in 0.0 => 30.0;
         /// Distance of each rotor from the centre of mass, l.
-        arm: T [m] = 0.1275, in 1e-3 => 1e2;
+        arm: T [m] = 0.1275, in 1e-3 => 10.0;
         /// Thrust per square of rotor speed, k.
         thrust_coefficient: T [N s^2/rad^2] = 7.2e-7, in 1e-12 => 1.0;
         /// Drag torque per square of rotor speed, c.
         drag_coefficient: T [N m s^2/rad^2] = 1.98e-8, in 1e-14 => 1.0;
         /// Time constant of the rotors' first-order lag.
-        motor_lag: T [s] = 0.02, in 1e-4 => 10.0;
+        motor_lag: T [s] = 0.02, in 1e-4 => 1.0;
         /// Lowest rotor speed.
-        rotor_speed_min: T [rad/s] = 150.0, in 0.0 => 1e5;
+        rotor_speed_min: T [rad/s] = 150.0, in 0.0 => 2e4;
         /// Highest rotor speed.
-        rotor_speed_max: T [rad/s] = 2917.0, in 1.0 => 1e5;
+        rotor_speed_max: T [rad/s] = 2917.0, in 1.0 => 2e4;
     }
 }
 
@@ -45,9 +45,9 @@ impl<T: Real> Vehicle<T> {
         let column = |i: usize| ARTICLE_PLUS[i];
         [
             [T::one(); 4],
-            core::array::from_fn(|i| self.arm * T::lit(column(i).1)),
-            core::array::from_fn(|i| -(self.arm * T::lit(column(i).0))),
-            core::array::from_fn(|i| -(ratio * T::lit(column(i).2))),
+            stormpetrel_control::record::from_index(|i| self.arm * T::lit(column(i).1)),
+            stormpetrel_control::record::from_index(|i| -(self.arm * T::lit(column(i).0))),
+            stormpetrel_control::record::from_index(|i| -(ratio * T::lit(column(i).2))),
         ]
     }
 

@@ -8,7 +8,7 @@ use crate::{dispatch_controller, registry};
 registry! {
     /// Attitude laws, under their names in scenario files.
     pub enum AttitudeLaw / AttitudeLawSettings keyed "law" from Model;
-    dispatch dispatch_controller (Attitude => Rate);
+    dispatch dispatch_controller (Attitude => Rate, each);
     "euler" => EulerError in euler;
     "tilt-priority" => TiltPriority in tilt_priority;
 }

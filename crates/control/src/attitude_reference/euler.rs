@@ -13,8 +13,9 @@
 
 use super::{RateMemory, Rates, projected_thrust};
 use crate::controller::Controller;
-use crate::math::{Euler, Rotation};
+use crate::math::{Body, Euler, Rotation, World};
 use crate::real::Real;
+use crate::record::RecordExt as _;
 use crate::signals::{Attitude, Measurement, Model, Thrust};
 use crate::{choice, options, record};
 
@@ -69,24 +70,36 @@ impl<T: Real> EulerAngles<T> {
     }
 }
 
+/// The attitude with the angles (1) and (2).
+#[inline(always)]
+fn angles<T: Real>(thrust: &Thrust<T>, pitch: Pitch) -> Rotation<T, Body, World> {
+    let f = thrust.force;
+    let (sin, cos) = thrust.yaw.sin_cos();
+    let roll = ((f.x * sin - f.y * cos) / f.norm()).asin(); // (1)
+    let forward = f.x * cos + f.y * sin;
+    let (y, x) = match pitch {
+        Pitch::Arctan => (forward * T::one().with_sign(f.z), f.z.abs()), // (2)
+        Pitch::Atan2 => (forward, f.z),
+    };
+    Rotation::from_euler(Euler { roll, pitch: y.atan2(x), yaw: thrust.yaw })
+}
+
 impl<T: Real> Controller<T> for EulerAngles<T> {
     type Reference = Thrust<T>;
     type Command = Attitude<T>;
 
     #[inline(always)]
     fn update(&mut self, measurement: &Measurement<T>, thrust: &Thrust<T>, dt: T) -> Attitude<T> {
-        let f = thrust.force;
-        let (sin, cos) = thrust.yaw.sin_cos();
-        let roll = ((f.x * sin - f.y * cos) / f.norm()).asin(); // (1)
-        let forward = f.x * cos + f.y * sin;
-        let pitch = match self.options.pitch {
-            Pitch::Arctan => (forward * T::one().with_sign(f.z)).atan2(f.z.abs()), // (2)
-            Pitch::Atan2 => forward.atan2(f.z),
-        };
-        let rotation = Rotation::from_euler(Euler { roll, pitch, yaw: thrust.yaw });
+        let mut attitude = Attitude::<T>::default();
+        for i in 0..T::LANES {
+            let thrust = thrust.pick(i);
+            angles(&thrust, self.options.pitch).put(&mut attitude.rotation, i);
+            let thrust = projected_thrust(&thrust, &measurement.pick(i), &self.model.pick(i)); // (3)
+            attitude.thrust.set_lane(i, thrust);
+        }
+        let rotation = &attitude.rotation;
         let (rate, acceleration) = self.memory.update(self.options.rates, rotation, thrust, dt);
-        let thrust = projected_thrust(thrust, measurement, &self.model); // (3)
-        Attitude { rotation, rate, acceleration, thrust }
+        Attitude { rate, acceleration, ..attitude }
     }
 
     fn reset(&mut self, _: &Measurement<T>) {

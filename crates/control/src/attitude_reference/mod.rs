@@ -13,7 +13,7 @@ pub use rates::{RateMemory, Rates, flatness_rates};
 registry! {
     /// Attitude references, under their names in scenario files.
     pub enum AttitudeReference / AttitudeReferenceSettings keyed "law" from Model;
-    dispatch dispatch_controller (Thrust => Attitude);
+    dispatch dispatch_controller (Thrust => Attitude, whole);
     "euler" => EulerAngles in euler;
     "rotation" => RotationMatrix in rotation;
 }
@@ -42,14 +42,16 @@ pub fn attitude_along<T: Real>(
     let (sin, cos) = yaw.sin_cos();
     let y_c = Vec3::new(-sin, cos, T::zero());
     let heading = Vec3::new(cos, sin, T::zero());
-    let down = force.norm_squared().lt(T::lit(1e-12));
-    let b_z = Vec3::select(down, Vec3::up(T::one()), force).unit();
-    let side = y_c.cross(b_z);
+    let none = force.norm_squared().lt(T::lit(1e-12));
+    let force = Vec3::select(none, Vec3::up(T::one()), force);
+    let length_squared = force.norm_squared();
+    // From the force itself and not from b_z: the two roots below need not wait for each other.
+    let side = y_c.cross(force);
     let last = last.unwrap_or(heading);
     // Closer than 0.06 deg to the singular direction the last axis is held, made normal to b_z.
-    let singular = side.norm_squared().lt(T::lit(1e-6));
-    let held = last - b_z * last.dot(b_z);
+    let singular = side.norm_squared().lt(T::lit(1e-6) * length_squared);
+    let held = last * length_squared - force * last.dot(force);
     let side = Vec3::select(singular, held, side * T::one().with_sign(side.dot(last)));
-    let b_x = side.unit();
+    let (b_x, b_z) = (side.unit(), force.unit());
     Rotation::from_axes(b_x, b_z.cross(b_x), b_z)
 }

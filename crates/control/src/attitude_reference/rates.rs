@@ -14,6 +14,7 @@
 
 use crate::math::{Body, Rotation, Vec3, World};
 use crate::real::Real;
+use crate::record::RecordExt as _;
 use crate::signals::Thrust;
 use crate::{choice, record};
 
@@ -45,22 +46,37 @@ impl<T: Real> RateMemory<T> {
     pub fn update(
         &mut self,
         source: Rates,
-        rotation: Rotation<T, Body, World>,
+        rotation: &Rotation<T, Body, World>,
         thrust: &Thrust<T>,
         dt: T,
     ) -> (Vec3<T, Body>, Vec3<T, Body>) {
-        let rates = match source {
-            Rates::Zero => (Vec3::zero(), Vec3::zero()),
-            Rates::Trajectory => flatness_rates(rotation, thrust),
-            Rates::Commanded => {
-                let step = self.previous.inverse() * rotation;
-                let omega = step.vector() * (T::lit(2.0) * step.w * self.started / dt); // (6)
-                (omega, Vec3::zero())
+        let (mut rate, mut acceleration) = (Vec3::zero(), Vec3::zero());
+        match source {
+            Rates::Zero => {}
+            Rates::Trajectory => {
+                for i in 0..T::LANES {
+                    let (omega, alpha) = flatness_rates(rotation.pick(i), &thrust.pick(i));
+                    omega.put(&mut rate, i);
+                    alpha.put(&mut acceleration, i);
+                }
             }
-        };
-        self.previous = rotation;
+            Rates::Commanded => {
+                for i in 0..T::LANES {
+                    let omega = self.pick(i).difference(rotation.pick(i), dt.lane(i));
+                    omega.put(&mut rate, i);
+                }
+            }
+        }
+        self.previous = *rotation;
         self.started = T::one();
-        rates
+        (rate, acceleration)
+    }
+
+    /// Backward difference of the attitude, in its own axes.
+    #[inline(always)]
+    fn difference(&self, rotation: Rotation<T, Body, World>, dt: T) -> Vec3<T, Body> {
+        let step = self.previous.inverse() * rotation;
+        step.vector() * (T::lit(2.0) * step.w * self.started / dt) // (6)
     }
 }
 

@@ -13,8 +13,9 @@
 
 use super::{RateMemory, Rates, attitude_along, projected_thrust};
 use crate::controller::Controller;
-use crate::math::{Vec3, World};
+use crate::math::{Body, Rotation, Vec3, World};
 use crate::real::Real;
+use crate::record::RecordExt as _;
 use crate::signals::{Attitude, Measurement, Model, Thrust};
 use crate::{options, record};
 
@@ -57,6 +58,16 @@ impl<T: Real> RotationMatrix<T> {
     pub fn new(gains: Gains<T>, options: Options, model: &Model<T>) -> Self {
         Self { gains, options, model: *model, ..Self::default() }
     }
+
+    #[inline(always)]
+    fn rotation(&mut self, thrust: &Thrust<T>) -> Rotation<T, Body, World> {
+        let (sin, cos) = thrust.yaw.sin_cos();
+        let heading = Vec3::new(cos, sin, T::zero());
+        let last = Vec3::select(T::zero().lt(self.memory.started), self.forward, heading);
+        let rotation = attitude_along(thrust.force, thrust.yaw, Some(last)); // (1-3)
+        self.forward = rotation.x_axis();
+        rotation
+    }
 }
 
 impl<T: Real> Controller<T> for RotationMatrix<T> {
@@ -65,14 +76,17 @@ impl<T: Real> Controller<T> for RotationMatrix<T> {
 
     #[inline(always)]
     fn update(&mut self, measurement: &Measurement<T>, thrust: &Thrust<T>, dt: T) -> Attitude<T> {
-        let (sin, cos) = thrust.yaw.sin_cos();
-        let heading = Vec3::new(cos, sin, T::zero());
-        let last = Vec3::select(T::zero().lt(self.memory.started), self.forward, heading);
-        let rotation = attitude_along(thrust.force, thrust.yaw, Some(last)); // (1-3)
-        self.forward = rotation.x_axis();
+        let mut attitude = Attitude::<T>::default();
+        for i in 0..T::LANES {
+            let (mut law, thrust) = (self.pick(i), thrust.pick(i));
+            law.rotation(&thrust).put(&mut attitude.rotation, i);
+            law.forward.put(&mut self.forward, i);
+            let thrust = projected_thrust(&thrust, &measurement.pick(i), &law.model); // (4)
+            attitude.thrust.set_lane(i, thrust);
+        }
+        let rotation = &attitude.rotation;
         let (rate, acceleration) = self.memory.update(self.options.rates, rotation, thrust, dt);
-        let thrust = projected_thrust(thrust, measurement, &self.model); // (4)
-        Attitude { rotation, rate, acceleration, thrust }
+        Attitude { rate, acceleration, ..attitude }
     }
 
     fn reset(&mut self, _: &Measurement<T>) {

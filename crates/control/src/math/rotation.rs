@@ -64,6 +64,16 @@ impl<T: Real, A: Frame, B: Frame> Rotation<T, A, B> {
         let k = T::one() / norm;
         Self::from_quaternion(self.w * k, self.x * k, self.y * k, self.z * k)
     }
+    /// `a` where the mask says yes, else `b`.
+    #[inline(always)]
+    pub fn select(mask: T::Mask, a: Self, b: Self) -> Self {
+        Self::from_quaternion(
+            T::select(mask, a.w, b.w),
+            T::select(mask, a.x, b.x),
+            T::select(mask, a.y, b.y),
+            T::select(mask, a.z, b.z),
+        )
+    }
     /// The vector part of the quaternion.
     #[inline(always)]
     pub fn vector(self) -> Vec3<T, A> {
@@ -121,22 +131,21 @@ impl<T: Real, A: Frame, B: Frame> Rotation<T, A, B> {
         let x4 = one + x.x - y.y - z.z;
         let y4 = one - x.x + y.y - z.z;
         let z4 = one - x.x - y.y + z.z;
-        // Each row is the quaternion times four times its own component.
-        let rows = [
-            [w4, y.z - z.y, z.x - x.z, x.y - y.x],
-            [y.z - z.y, x4, x.y + y.x, z.x + x.z],
-            [z.x - x.z, x.y + y.x, y4, y.z + z.y],
-            [x.y - y.x, z.x + x.z, y.z + z.y, z4],
-        ];
-        let mut largest = w4;
-        let mut row = rows[0];
-        for (candidate, of) in [(x4, rows[1]), (y4, rows[2]), (z4, rows[3])] {
-            let better = largest.lt(candidate);
-            largest = T::select(better, candidate, largest);
-            row = core::array::from_fn(|i| T::select(better, of[i], row[i]));
-        }
-        let k = T::lit(0.5) / largest.sqrt();
-        Self::from_quaternion(row[0] * k, row[1] * k, row[2] * k, row[3] * k).normalised()
+        // Four times the product of two components.
+        let (wx, wy, wz) = (y.z - z.y, z.x - x.z, x.y - y.x);
+        let (xy, xz, yz) = (x.y + y.x, z.x + x.z, y.z + z.y);
+        // Each candidate is the quaternion times four times its own component.
+        let larger = |a: (T, Self), b: (T, Self)| {
+            let better = a.0.lt(b.0);
+            (T::select(better, b.0, a.0), Self::select(better, b.1, a.1))
+        };
+        let of = Self::from_quaternion;
+        let w = (w4, of(w4, wx, wy, wz));
+        let x = (x4, of(wx, x4, xy, xz));
+        let y = (y4, of(wy, xy, y4, yz));
+        let z = (z4, of(wz, xz, yz, z4));
+        let (_, q) = larger(larger(larger(w, x), y), z);
+        q.normalised()
     }
 }
 
@@ -208,11 +217,40 @@ impl<T: Real, A: Frame, B: Frame> Record<T> for Rotation<T, A, B> {
         f: &mut impl FnMut([T; M]) -> U,
     ) -> Rotation<U, A, B> {
         Rotation {
-            w: f(rows.map(|row| row.w)),
-            x: f(rows.map(|row| row.x)),
-            y: f(rows.map(|row| row.y)),
-            z: f(rows.map(|row| row.z)),
+            w: f(crate::record::each(rows, |row| row.w)),
+            x: f(crate::record::each(rows, |row| row.x)),
+            y: f(crate::record::each(rows, |row| row.y)),
+            z: f(crate::record::each(rows, |row| row.z)),
             frames: PhantomData,
         }
+    }
+    #[inline(always)]
+    fn pick_lane(&self, i: usize) -> Rotation<T::Scalar, A, B> {
+        Rotation {
+            w: self.w.lane(i),
+            x: self.x.lane(i),
+            y: self.y.lane(i),
+            z: self.z.lane(i),
+            frames: PhantomData,
+        }
+    }
+    #[inline(always)]
+    fn put_mapped<U: Real<Scalar = T>>(
+        &self,
+        batch: &mut Rotation<U, A, B>,
+        i: usize,
+        f: &mut impl FnMut(T) -> T,
+    ) {
+        batch.w.set_lane(i, f(self.w));
+        batch.x.set_lane(i, f(self.x));
+        batch.y.set_lane(i, f(self.y));
+        batch.z.set_lane(i, f(self.z));
+    }
+    #[inline(always)]
+    fn each_variable(&self, f: &mut impl FnMut(T)) {
+        f(self.w);
+        f(self.x);
+        f(self.y);
+        f(self.z);
     }
 }

@@ -189,10 +189,31 @@ impl<T: Real, F: Frame> Record<T> for Vec3<T, F> {
         f: &mut impl FnMut([T; M]) -> U,
     ) -> Vec3<U, F> {
         Vec3 {
-            x: f(rows.map(|row| row.x)),
-            y: f(rows.map(|row| row.y)),
-            z: f(rows.map(|row| row.z)),
+            x: f(crate::record::each(rows, |row| row.x)),
+            y: f(crate::record::each(rows, |row| row.y)),
+            z: f(crate::record::each(rows, |row| row.z)),
             frame: PhantomData,
         }
+    }
+    #[inline(always)]
+    fn pick_lane(&self, i: usize) -> Vec3<T::Scalar, F> {
+        Vec3 { x: self.x.lane(i), y: self.y.lane(i), z: self.z.lane(i), frame: PhantomData }
+    }
+    #[inline(always)]
+    fn put_mapped<U: Real<Scalar = T>>(
+        &self,
+        batch: &mut Vec3<U, F>,
+        i: usize,
+        f: &mut impl FnMut(T) -> T,
+    ) {
+        batch.x.set_lane(i, f(self.x));
+        batch.y.set_lane(i, f(self.y));
+        batch.z.set_lane(i, f(self.z));
+    }
+    #[inline(always)]
+    fn each_variable(&self, f: &mut impl FnMut(T)) {
+        f(self.x);
+        f(self.y);
+        f(self.z);
     }
 }

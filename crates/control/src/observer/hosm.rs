@@ -76,6 +76,12 @@ record! {
     pub struct Hosm {
         /// Gains.
         gains: Gains<T> [];
+        /// lambda0 L, prepared for (3).
+        gain0: T [m/s^3];
+        /// lambda1 L^(1/2), prepared for (2).
+        gain1: T [];
+        /// lambda2 L^(1/3), prepared for (1).
+        gain2: T [];
         /// Measured position.
         x: Vec3<T, World> [m];
         /// Estimated position.
@@ -94,7 +100,17 @@ record! {
 impl<T: Real> Hosm<T> {
     /// The observer at rest in the origin; `reset` moves it to the vehicle.
     pub fn new(gains: Gains<T>, options: Options, _: &Model<T>) -> Self {
-        Self { gains, options, ..Self::default() }
+        let mut observer = Self { gains, options, ..Self::default() };
+        observer.prepare();
+        observer
+    }
+
+    /// What (1) to (3) need of the gains.
+    fn prepare(&mut self) {
+        let Gains { lipschitz, lambda0, lambda1, lambda2, .. } = self.gains;
+        self.gain0 = lambda0 * lipschitz;
+        self.gain1 = lambda1 * lipschitz.sqrt();
+        self.gain2 = lambda2 * lipschitz.cbrt();
     }
 }
 
@@ -111,20 +127,19 @@ impl<T: Real> Observer<T> for Hosm<T> {
 
     #[inline(always)]
     fn advance(&mut self, applied: &Applied<T>, dt: T) {
-        let Gains { lipschitz, lambda0, lambda1, lambda2, .. } = self.gains;
         let u = match self.options.input {
             Input::Measured => applied.measured,
             Input::Commanded => applied.commanded,
         };
-        let Self { x, z0, z1, z2, .. } = *self;
+        let Self { gain0, gain1, gain2, x, z0, z1, z2, .. } = *self;
 
-        let v0 = z1 - (z0 - x).map(two_thirds_power) * (lambda2 * lipschitz.cbrt()); // (1)
-        let v1 = z2 - (z1 - v0).map(signed_root) * (lambda1 * lipschitz.sqrt()); // (2)
+        let v0 = z1 - (z0 - x).map(two_thirds_power) * gain2; // (1)
+        let v1 = z2 - (z1 - v0).map(signed_root) * gain1; // (2)
         let z1_dot = match self.options.z2 {
             Z2::Single => v1 + u,
             Z2::Doubled => v1 + u + z2,
         };
-        let z2_dot = -(z2 - v1).map(T::sign) * (lambda0 * lipschitz); // (3)
+        let z2_dot = -(z2 - v1).map(T::sign) * gain0; // (3)
 
         self.z0 += v0 * dt;
         self.z1 += z1_dot * dt;
@@ -132,6 +147,8 @@ impl<T: Real> Observer<T> for Hosm<T> {
     }
 
     fn reset(&mut self, measurement: &Measurement<T>) {
+        // Prepared again, or a number broken in memory would break every estimate to come.
+        self.prepare();
         self.x = measurement.position;
         self.z0 = measurement.position;
         self.z1 = measurement.velocity;

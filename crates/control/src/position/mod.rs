@@ -6,6 +6,6 @@ use crate::{dispatch_controller, registry};
 registry! {
     /// Position laws, under their names in scenario files.
     pub enum Position / PositionSettings keyed "law" from Model;
-    dispatch dispatch_controller (Trajectory => Thrust);
+    dispatch dispatch_controller (Trajectory => Thrust, each);
     "pid" => Pid in pid;
 }

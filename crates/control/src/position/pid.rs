@@ -84,7 +84,11 @@ impl<T: Real> Controller<T> for Pid<T> {
         let refused = measurement.attitude.z_axis()
             * (measurement.unallocated.thrust / self.model.mass);
         self.integral += (e + refused * anti_windup) * dt; // (3)
-        self.integral = self.integral.map(|s| s.clamp(-integral_limit, integral_limit));
+        // `clamp` would turn a sum that is not a number into one; so it stays for the guard to see.
+        self.integral = self.integral.map(|s| {
+            let s = T::select(integral_limit.lt(s), integral_limit, s);
+            T::select(s.lt(-integral_limit), -integral_limit, s)
+        });
 
         Thrust {
             force: f + Vec3::up(self.model.gravity), // (4)

@@ -85,6 +85,14 @@ impl<T: Real> Controller<T> for Indi<T> {
     type Command = Wrench<T>;
 
     #[inline(always)]
+    fn tune(&mut self, dt: T) {
+        if self.options.filter == Filter::Butterworth {
+            self.omega_dot.tune(self.gains.cutoff_hz, dt);
+            self.torque.tune(self.gains.cutoff_hz, dt);
+        }
+    }
+
+    #[inline(always)]
     fn update(&mut self, measurement: &Measurement<T>, reference: &Rate<T>, dt: T) -> Wrench<T> {
         let omega = measurement.rate;
         let raw = (omega - self.previous) * (T::one() / dt);
@@ -93,8 +101,6 @@ impl<T: Real> Controller<T> for Indi<T> {
         let (omega_dot, tau) = match self.options.filter {
             Filter::Absent => (raw, achieved),
             Filter::Butterworth => {
-                self.omega_dot.tune(self.gains.cutoff_hz, dt);
-                self.torque.tune(self.gains.cutoff_hz, dt);
                 (self.omega_dot.update(raw), self.torque.update(achieved))
             }
         };

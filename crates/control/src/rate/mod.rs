@@ -6,7 +6,7 @@ use crate::{dispatch_controller, registry};
 registry! {
     /// Rate laws, under their names in scenario files.
     pub enum RateLaw / RateLawSettings keyed "law" from Model;
-    dispatch dispatch_controller (Rate => Wrench);
+    dispatch dispatch_controller (Rate => Wrench, each);
     "indi" => Indi in indi;
     "pid" => Pid in pid;
 }

@@ -116,9 +116,11 @@ fn printed() -> Table {
                 ]
             })
             .collect(),
-        notes: vec!["Position in m s, m^2 s, m; attitude in rad s, rad^2 s, rad (Euler-angle norm).".into()],
+        notes: vec![UNITS.into()],
     }
 }
+
+const UNITS: &str = "Position in m s, m^2 s, m; attitude in rad s, rad^2 s, rad (Euler-angle norm, against the law's own reference, as in the article).";
 
 const LIKE_THE_ARTICLE: [&str; 6] = [
     "position.iae",
@@ -143,7 +145,7 @@ fn compare(group: &Group, title: &str, lead: &str, variants: &[(&str, &str)]) ->
         lead: lead.into(),
         head: heads(&LIKE_HEAD),
         rows: rows.collect(),
-        notes: Vec::new(),
+        notes: vec![UNITS.into()],
     }
 }
 
@@ -228,7 +230,7 @@ fn ladder(story: &Story) -> Table {
         lead: "0.5 N and 0.02 N m. Each repair is visible: half an estimate, wanted against real thrust, two integrators, the missing reference rate (a factor 13 in the late error).".into(),
         head: heads(&["variant", "IAE", "max", "late max", "att. IAE", "rotors: IAE", "max", "late max", "att. IAE"]),
         rows: rows.collect(),
-        notes: vec!["Golden model: torque lag of 20 ms, thrust at once, no limits. Rotors: lag on every rotor, 150 to 2917 rad/s, allocation. Late: after 10 s. Attitude: rotation angle from the law's own reference.".into()],
+        notes: vec!["Golden model: torque lag of 20 ms, thrust at once, no limits. Rotors: lag on every rotor, 150 to 2917 rad/s, allocation. IAE in m s and rad s, max in m; late: after 10 s. Attitude: rotation angle from the law's own reference.".into()],
     }
 }
 
@@ -238,7 +240,7 @@ fn literal_repairs(group: &Group) -> Table {
     Table {
         title: "(c) The literal reading, each repair alone and one after the other".into(),
         lead: "Only the geometric attitude ends the tumbling; only then do the other repairs show.".into(),
-        head: heads(&["variant", "IAE", "max", "late max", "largest thrust (N)"]),
+        head: heads(&["variant", "IAE (m s)", "max (m)", "late max (m)", "largest thrust (N)"]),
         rows: group.flights.iter().filter(calm).map(|flown| row(flown, &METRICS)).collect(),
         notes: vec!["Even repaired, the printed disturbance asks for up to 155 N, 25 times the weight, and for thrust downwards most of the time.".into()],
     }
@@ -250,7 +252,7 @@ fn translational(group: &Group) -> Table {
     Table {
         title: "(c) The position loop alone".into(),
         lead: "The wanted thrust vector acts exactly, so nothing but position law and observer is seen. With L0 = 10 the observer makes the printed case worse than the plain PID.".into(),
-        head: heads(&["case", "IAE", "ISE", "max", "late max"]),
+        head: heads(&["case", "IAE (m s)", "ISE (m^2 s)", "max (m)", "late max (m)"]),
         rows: group.flights.iter().map(|flown| row(flown, &METRICS)).collect(),
         notes: Vec::new(),
     }

@@ -21,7 +21,7 @@ record! {
     /// Numbers of the lagged wrench.
     pub struct Gains {
         /// Time constant of the torque.
-        lag: T [s] = 0.02, in 1e-4 => 10.0;
+        lag: T [s] = 0.02, in 1e-4 => 1.0;
     }
 }
 
@@ -59,6 +59,10 @@ impl<T: Real> Actuate<T> for LaggedWrench<T> {
     fn pass(&mut self, h: T) {
         let a = T::one() - (-h / self.gains.lag).exp();
         self.torque += (self.ideal.wrench.torque - self.torque) * a; // (2)
+    }
+    fn reset(&mut self) {
+        self.ideal.reset();
+        self.torque = Vec3::zero();
     }
     #[inline(always)]
     fn thrust_per_mass(&self, state: &State<T>, vehicle: &Vehicle<T>) -> Vec3<T, World> {

@@ -3,10 +3,12 @@
 use stormpetrel_control::controller::Plain;
 use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::Real;
+use stormpetrel_control::record::RecordExt as _;
 use stormpetrel_control::registry;
 use stormpetrel_control::signals::Wrench;
 use stormpetrel_control::stack::{Command, Exit};
 
+use crate::dynamics::{Held, runge_kutta};
 use crate::state::State;
 use crate::vehicle::Vehicle;
 
@@ -18,6 +20,8 @@ pub trait Actuate<T: Real>: Plain<T> {
     fn command(&mut self, command: &Command<T>, vehicle: &Vehicle<T>) -> Wrench<T>;
     /// Lets a lag of its own pass `h` seconds, before each integration step.
     fn pass(&mut self, _h: T) {}
+    /// Forgets what was commanded, as at the start of a flight.
+    fn reset(&mut self) {}
     /// The rotors' thrust per mass, m/s^2.
     fn thrust_per_mass(&self, state: &State<T>, vehicle: &Vehicle<T>) -> Vec3<T, World>;
     /// The rotors' torque, N m.
@@ -36,6 +40,33 @@ pub trait Actuate<T: Real>: Plain<T> {
 
 macro_rules! dispatch_actuate {
     ($name:ident [$($variant:ident)+] ()) => {
+        impl<T: Real> $name<T> {
+            /// Thrust and torque that act in this state.
+            #[inline(always)]
+            pub fn wrench(&self, state: &State<T>) -> Wrench<T> {
+                let mut wrench = Wrench::default();
+                match self { $( Self::$variant(all) => for i in 0..T::LANES {
+                    let (one, state) = (all.pick(i), state.pick(i));
+                    Wrench { thrust: one.thrust(&state), torque: one.torque(&state) }.put(&mut wrench, i);
+                } )+ }
+                wrench
+            }
+
+            /// The state `h` seconds on, vehicle by vehicle.
+            #[inline(always)]
+            pub fn step(&mut self, state: &State<T>, h: T, vehicle: &Vehicle<T>, held: &Held<T>) -> State<T> {
+                let mut next = *state;
+                match self { $( Self::$variant(all) => {
+                    all.pass(h);
+                    for i in 0..T::LANES {
+                        runge_kutta(&state.pick(i), h.lane(i), &vehicle.pick(i), &all.pick(i), &held.pick(i))
+                            .put(&mut next, i);
+                    }
+                } )+ }
+                next
+            }
+        }
+
         impl<T: Real> Actuate<T> for $name<T> {
             #[inline(always)]
             fn exit(&self) -> Exit {
@@ -43,23 +74,36 @@ macro_rules! dispatch_actuate {
             }
             #[inline(always)]
             fn command(&mut self, command: &Command<T>, vehicle: &Vehicle<T>) -> Wrench<T> {
-                match self { $( Self::$variant(x) => x.command(command, vehicle), )+ }
+                let mut refused = Wrench::default();
+                match self { $( Self::$variant(all) => for i in 0..T::LANES {
+                    let mut one = all.pick(i);
+                    one.command(&command.pick(i), &vehicle.pick(i)).put(&mut refused, i);
+                    one.put(all, i);
+                } )+ }
+                refused
             }
             #[inline(always)]
             fn pass(&mut self, h: T) {
                 match self { $( Self::$variant(x) => x.pass(h), )+ }
             }
+            fn reset(&mut self) {
+                match self { $( Self::$variant(x) => x.reset(), )+ }
+            }
             #[inline(always)]
             fn thrust_per_mass(&self, state: &State<T>, vehicle: &Vehicle<T>) -> Vec3<T, World> {
-                match self { $( Self::$variant(x) => x.thrust_per_mass(state, vehicle), )+ }
+                let mut thrust = Vec3::zero();
+                match self { $( Self::$variant(all) => for i in 0..T::LANES {
+                    all.pick(i).thrust_per_mass(&state.pick(i), &vehicle.pick(i)).put(&mut thrust, i);
+                } )+ }
+                thrust
             }
             #[inline(always)]
             fn torque(&self, state: &State<T>) -> Vec3<T, Body> {
-                match self { $( Self::$variant(x) => x.torque(state), )+ }
+                self.wrench(state).torque
             }
             #[inline(always)]
             fn thrust(&self, state: &State<T>) -> T {
-                match self { $( Self::$variant(x) => x.thrust(state), )+ }
+                self.wrench(state).thrust
             }
             #[inline(always)]
             fn rotor_acceleration(&self, state: &State<T>, vehicle: &Vehicle<T>) -> [T; 4] {

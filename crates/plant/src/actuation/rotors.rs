@@ -31,6 +31,12 @@ record! {
         allocation: Allocation<T> [];
         /// Thrust coefficient k.
         thrust_coefficient: T [N s^2/rad^2];
+        /// Its reciprocal.
+        per_coefficient: T [rad^2/(N s^2)];
+        /// Reciprocal mass of the vehicle.
+        per_mass: T [1/kg];
+        /// Reciprocal time constant of the rotors.
+        per_lag: T [1/s];
         /// Speed asked of each rotor.
         commanded: [T; 4] [rad/s];
         /// Share of the rotors asked to run at a limit.
@@ -44,6 +50,9 @@ impl Rotors<f64> {
         Self {
             allocation: vehicle.allocation(),
             thrust_coefficient: vehicle.thrust_coefficient,
+            per_coefficient: 1.0 / vehicle.thrust_coefficient,
+            per_mass: 1.0 / vehicle.mass,
+            per_lag: 1.0 / vehicle.motor_lag,
             commanded: [vehicle.hover_speed(); 4],
             saturation: 0.0,
         }
@@ -53,7 +62,7 @@ impl Rotors<f64> {
 impl<T: Real> Rotors<T> {
     #[inline(always)]
     fn wrench(&self, state: &State<T>) -> Wrench<T> {
-        self.allocation.wrench(state.rotor_speed.map(|w| self.thrust_coefficient * w.sq())) // (3)
+        self.allocation.wrench(stormpetrel_control::record::each(state.rotor_speed, |w| self.thrust_coefficient * w.sq())) // (3)
     }
 }
 
@@ -64,8 +73,9 @@ impl<T: Real> Actuate<T> for Rotors<T> {
     #[inline(always)]
     fn command(&mut self, command: &Command<T>, _: &Vehicle<T>) -> Wrench<T> {
         let (thrusts, granted) = self.allocation.allocate(&command.wrench);
-        let per_k = T::one() / self.thrust_coefficient;
-        self.commanded = thrusts.map(|u| (u * per_k).sqrt()); // (1)
+        for i in 0..4 {
+            self.commanded[i] = (thrusts[i] * self.per_coefficient).sqrt(); // (1)
+        }
         let Allocation { lowest, highest, .. } = self.allocation;
         let mut limited = T::zero();
         for u in thrusts {
@@ -79,8 +89,8 @@ impl<T: Real> Actuate<T> for Rotors<T> {
         }
     }
     #[inline(always)]
-    fn thrust_per_mass(&self, state: &State<T>, vehicle: &Vehicle<T>) -> Vec3<T, World> {
-        state.attitude.z_axis() * (self.wrench(state).thrust / vehicle.mass)
+    fn thrust_per_mass(&self, state: &State<T>, _: &Vehicle<T>) -> Vec3<T, World> {
+        state.attitude.z_axis() * (self.wrench(state).thrust * self.per_mass)
     }
     #[inline(always)]
     fn torque(&self, state: &State<T>) -> Vec3<T, Body> {
@@ -91,9 +101,8 @@ impl<T: Real> Actuate<T> for Rotors<T> {
         self.wrench(state).thrust
     }
     #[inline(always)]
-    fn rotor_acceleration(&self, state: &State<T>, vehicle: &Vehicle<T>) -> [T; 4] {
-        let per_lag = T::one() / vehicle.motor_lag;
-        core::array::from_fn(|i| (self.commanded[i] - state.rotor_speed[i]) * per_lag) // (2)
+    fn rotor_acceleration(&self, state: &State<T>, _: &Vehicle<T>) -> [T; 4] {
+        stormpetrel_control::record::from_index(|i| (self.commanded[i] - state.rotor_speed[i]) * self.per_lag) // (2)
     }
     #[inline(always)]
     fn saturation(&self) -> T {

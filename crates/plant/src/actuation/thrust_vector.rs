@@ -46,6 +46,9 @@ impl<T: Real> Actuate<T> for ThrustVector<T> {
         self.force = command.thrust.force;
         Wrench::default()
     }
+    fn reset(&mut self) {
+        self.force = Vec3::zero();
+    }
     #[inline(always)]
     fn thrust_per_mass(&self, _: &State<T>, _: &Vehicle<T>) -> Vec3<T, World> {
         self.force // (1)

@@ -47,6 +47,9 @@ impl<T: Real> Actuate<T> for IdealWrench<T> {
         self.per_mass = command.wrench.thrust / vehicle.mass;
         Wrench::default()
     }
+    fn reset(&mut self) {
+        *self = Self::default();
+    }
     #[inline(always)]
     fn thrust_per_mass(&self, state: &State<T>, _: &Vehicle<T>) -> Vec3<T, World> {
         state.attitude.z_axis() * self.per_mass // (1)

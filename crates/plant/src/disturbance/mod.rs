@@ -2,6 +2,7 @@
 
 use stormpetrel_control::controller::Plain;
 use stormpetrel_control::real::Real;
+use stormpetrel_control::record::RecordExt as _;
 use stormpetrel_control::registry;
 
 use crate::dynamics::Push;
@@ -18,10 +19,28 @@ pub trait Disturb<T: Real>: Plain<T> {
 
 macro_rules! dispatch_disturb {
     ($name:ident [$($variant:ident)+] ()) => {
+        impl<T: Real> $name<T> {
+            /// Adds the push at `time` seconds after the start.
+            #[inline(always)]
+            pub fn add(&self, push: &mut Push<T>, time: T, vehicle: &Vehicle<T>) {
+                match self { $( Self::$variant(all) => for i in 0..T::LANES {
+                    let one = all.pick(i).at(time.lane(i), &vehicle.pick(i));
+                    let mut sum = push.pick(i);
+                    sum.force += one.force;
+                    sum.torque += one.torque;
+                    sum.put(push, i);
+                } )+ }
+            }
+        }
+
         impl<T: Real> Disturb<T> for $name<T> {
             #[inline(always)]
             fn at(&self, time: T, vehicle: &Vehicle<T>) -> Push<T> {
-                match self { $( Self::$variant(x) => x.at(time, vehicle), )+ }
+                let mut at = Push::default();
+                match self { $( Self::$variant(all) => for i in 0..T::LANES {
+                    all.pick(i).at(time.lane(i), &vehicle.pick(i)).put(&mut at, i);
+                } )+ }
+                at
             }
         }
     };

@@ -2,6 +2,7 @@
 
 use stormpetrel_control::controller::Plain;
 use stormpetrel_control::real::Real;
+use stormpetrel_control::record::RecordExt as _;
 use stormpetrel_control::registry;
 use stormpetrel_control::signals::Trajectory;
 
@@ -18,7 +19,11 @@ macro_rules! dispatch_refer {
         impl<T: Real> Refer<T> for $name<T> {
             #[inline(always)]
             fn at(&self, time: T) -> Trajectory<T> {
-                match self { $( Self::$variant(x) => x.at(time), )+ }
+                let mut at = Trajectory::default();
+                match self { $( Self::$variant(all) => for i in 0..T::LANES {
+                    all.pick(i).at(time.lane(i)).put(&mut at, i);
+                } )+ }
+                at
             }
         }
     };

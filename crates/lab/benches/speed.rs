@@ -1,0 +1,164 @@
+//! How fast: prints the tables of `docs/benchmarks.md`. Run through `cargo xtask bench`.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use stormpetrel_control::attitude::AttitudeLawSettings;
+use stormpetrel_control::attitude_reference::AttitudeReferenceSettings;
+use stormpetrel_control::controller::{Controller, Guarded, GuardedObserver};
+use stormpetrel_control::lanes::Lanes;
+use stormpetrel_control::observer::ObserverSettings;
+use stormpetrel_control::position::PositionSettings;
+use stormpetrel_control::rate::RateLawSettings;
+use stormpetrel_control::record::RecordExt;
+use stormpetrel_control::registry::Settings;
+use stormpetrel_control::signals::{Applied, Measurement, Model};
+use stormpetrel_lab::fly::{LANES, fly, fly_batch_at};
+use stormpetrel_lab::scenario::Scenario;
+use stormpetrel_lab::shipped::shipped;
+use stormpetrel_plant::dispatch::{Width, Work};
+use stormpetrel_plant::flight::Flight;
+
+const TICKS: u64 = 20_000;
+
+/// Steps without log or metrics.
+struct Steps<T> {
+    flight: Flight<T>,
+    ticks: u64,
+}
+
+impl<T: stormpetrel_control::real::Real> Work for Steps<T> {
+    type Output = Flight<T>;
+    #[inline(always)]
+    fn run(self) -> Flight<T> {
+        let mut flight = self.flight;
+        for _ in 0..self.ticks {
+            let tick = flight.decide();
+            flight.advance(&tick);
+        }
+        flight
+    }
+}
+
+/// Nanoseconds for one of `count` items, the best of five runs.
+fn best(count: u64, mut work: impl FnMut()) -> f64 {
+    (0..5)
+        .map(|_| {
+            let begin = Instant::now();
+            work();
+            begin.elapsed().as_secs_f64() * 1e9 / count as f64
+        })
+        .fold(f64::INFINITY, |a, b| if b < a { b } else { a })
+}
+
+fn scenario(name: &str) -> Scenario {
+    let (file, variant) = name.split_once(':').unwrap_or((name, ""));
+    let file = shipped(file).and_then(Result::ok).unwrap_or_else(|| panic!("no scenario {name}"));
+    let mut all = file.scenarios.into_iter();
+    all.find(|s| variant.is_empty() || s.name == name)
+        .unwrap_or_else(|| panic!("no variant {name}"))
+}
+
+#[allow(clippy::print_stdout)] // the tables are what this program makes
+fn say(line: &str) {
+    println!("{line}");
+}
+
+fn law<L: Controller<f64>>(kind: &str, name: &str, law: L, reference: L::Reference)
+where
+    L::Command: Default,
+{
+    let mut law = Guarded::new(law, L::Command::default());
+    let measurement = Measurement::<f64>::default();
+    law.reset(&measurement);
+    let ns = best(TICKS, || {
+        for _ in 0..TICKS {
+            black_box(law.update(black_box(&measurement), black_box(&reference), 1e-3));
+        }
+    });
+    say(&format!("| {kind} `{name}` | {ns:.1} |"));
+}
+
+fn laws() {
+    say("| law (guarded, one f64 vehicle) | ns per update |\n|---|---|");
+    let model = Model::default();
+    let mut thrust = stormpetrel_control::signals::Thrust::<f64>::default();
+    thrust.force.z = 9.8;
+    for name in PositionSettings::NAMES {
+        let made = PositionSettings::named(name).map(|s| s.build(&model));
+        law("position", name, made.unwrap_or_default(), Default::default());
+    }
+    for name in AttitudeReferenceSettings::NAMES {
+        let made = AttitudeReferenceSettings::named(name).map(|s| s.build(&model));
+        law("attitude_reference", name, made.unwrap_or_default(), thrust);
+    }
+    for name in AttitudeLawSettings::NAMES {
+        let made = AttitudeLawSettings::named(name).map(|s| s.build(&model));
+        law("attitude", name, made.unwrap_or_default(), Default::default());
+    }
+    for name in RateLawSettings::NAMES {
+        let made = RateLawSettings::named(name).map(|s| s.build(&model));
+        law("rate", name, made.unwrap_or_default(), Default::default());
+    }
+    for name in ObserverSettings::NAMES {
+        let made = ObserverSettings::named(name).map(|s| s.build(&model)).unwrap_or_default();
+        let mut observer = GuardedObserver::new(made);
+        let measurement = Measurement::<f64>::default();
+        let mut applied = Applied::<f64>::default();
+        applied.measured.x = 0.1;
+        let ns = best(TICKS, || {
+            for _ in 0..TICKS {
+                observer.correct(black_box(&measurement), 1e-3);
+                observer.advance(black_box(&applied), 1e-3);
+                black_box(observer.estimate());
+            }
+        });
+        say(&format!("| observer `{name}` | {ns:.1} |"));
+    }
+}
+
+/// One block of the closed loop: single, and eight lanes at each width.
+fn closed_loop(name: &str) {
+    let one = scenario(name);
+    let single = best(TICKS, || {
+        black_box(Steps { flight: one.flight(), ticks: TICKS }.run());
+    });
+    let with_metrics = best(TICKS, || {
+        black_box(fly(&one, |_, _| {}));
+    });
+    say(&format!("\n`{name}`: ns per closed-loop step of one vehicle\n"));
+    say("| how | loop | against single | with metrics | against single |\n|---|---|---|---|---|");
+    say(&format!("| single | {single:.1} | 1 | {with_metrics:.1} | 1 |"));
+    let batch: Vec<Scenario> = (0..LANES).map(|_| one.clone()).collect();
+    let flight = one.flight();
+    let gathered: Flight<Lanes<f64, LANES>> = RecordExt::<f64>::gather([&flight; LANES]);
+    for width in Width::available() {
+        let lanes = best(TICKS * LANES as u64, || {
+            black_box(width.run(Steps { flight: gathered, ticks: TICKS }));
+        });
+        let measured = best(TICKS * LANES as u64, || {
+            black_box(fly_batch_at(&batch, width));
+        });
+        say(&format!(
+            "| eight lanes, {width:?} | {lanes:.1} | {:.2} times | {measured:.1} | {:.2} times |",
+            single / lanes,
+            with_metrics / measured
+        ));
+    }
+    let flight = single * TICKS as f64 * 1e-6;
+    let metrics = with_metrics * TICKS as f64 * 1e-6;
+    say(&format!(
+        "\nOne flight of 20 s at 1 kHz on one core: {flight:.1} ms, with all metrics {metrics:.1} ms.\n"
+    ));
+}
+
+fn main() {
+    laws();
+    for name in [
+        "article/consistent:rate-commanded",
+        "article/rotors:rate-commanded",
+        "article/literal:printed",
+    ] {
+        closed_loop(name);
+    }
+}

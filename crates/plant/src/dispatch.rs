@@ -1,0 +1,101 @@
+//! The widest registers of the machine, chosen at run time.
+//!
+//! An ordinary build aims at every x86-64 processor; what runs under [`Width::run`] is compiled once
+//! more for AVX2 and once more for AVX-512. The bits are the same in all three: no operation is
+//! contracted or reordered.
+
+/// Work to be compiled for each width.
+///
+/// `run` must be `#[inline(always)]`, and so must all that it calls: a function of its own would be
+/// compiled for the smallest width. Copy what the loop works on into locals first, so that the
+/// compiler sees that nothing overlaps.
+pub trait Work {
+    /// What comes out.
+    type Output;
+    /// Does the work.
+    fn run(self) -> Self::Output;
+}
+
+/// How wide the registers are that a loop over lanes may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// What every machine of the target has: two doubles on x86-64 (SSE2).
+    Baseline,
+    /// Four doubles.
+    Avx2,
+    /// Eight doubles.
+    Avx512,
+}
+
+impl Width {
+    /// What this machine can do, widest first.
+    pub fn available() -> impl Iterator<Item = Self> {
+        [Self::Avx512, Self::Avx2, Self::Baseline].into_iter().filter(|width| width.supported())
+    }
+
+    /// The widest that this machine can do.
+    pub fn widest() -> Self {
+        Self::available().next().unwrap_or(Self::Baseline)
+    }
+
+    /// As the command line and reports name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Baseline => "baseline",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn supported(self) -> bool {
+        match self {
+            Self::Baseline => true,
+            Self::Avx2 => pulp::x86::V3::try_new().is_some(),
+            Self::Avx512 => pulp::x86::V4::try_new().is_some(),
+        }
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    fn supported(self) -> bool {
+        self == Self::Baseline
+    }
+
+    /// Does the work at this width; at the baseline where the machine is narrower.
+    #[cfg(target_arch = "x86_64")]
+    pub fn run<W: Work>(self, work: W) -> W::Output {
+        match self {
+            Self::Avx512 => {
+                if let Some(wide) = pulp::x86::V4::try_new() {
+                    return wide.vectorize(Inlined(work));
+                }
+            }
+            Self::Avx2 => {
+                if let Some(wide) = pulp::x86::V3::try_new() {
+                    return wide.vectorize(Inlined(work));
+                }
+            }
+            Self::Baseline => {}
+        }
+        work.run()
+    }
+
+    /// Does the work; every width is the baseline on this target.
+    #[cfg(not(target_arch = "x86_64"))]
+    pub fn run<W: Work>(self, work: W) -> W::Output {
+        work.run()
+    }
+}
+
+/// [`Work`] in the form in which `pulp` inlines it.
+#[cfg(target_arch = "x86_64")]
+struct Inlined<W>(W);
+
+#[cfg(target_arch = "x86_64")]
+impl<W: Work> pulp::NullaryFnOnce for Inlined<W> {
+    type Output = W::Output;
+    #[inline(always)]
+    fn call(self) -> W::Output {
+        self.0.run()
+    }
+}

@@ -1,0 +1,166 @@
+//! Lags, limits and reports of the actuation, against closed forms and the article's equations.
+#![allow(clippy::disallowed_methods)] // the standard functions are the independent source
+
+mod common;
+
+use common::{Scene, body, named};
+use stormpetrel_control::math::Vec3;
+use stormpetrel_control::registry::Settings;
+use stormpetrel_control::signals::Wrench;
+use stormpetrel_control::stack::Command;
+use stormpetrel_plant::actuation::{Actuate, Actuation, ActuationSettings, lagged_wrench};
+use stormpetrel_plant::dynamics::{Held, Push, runge_kutta};
+use stormpetrel_plant::state::State;
+use stormpetrel_plant::vehicle::{Vehicle, VehicleSettings};
+
+fn vehicle() -> Vehicle<f64> {
+    Scene::default().vehicle
+}
+
+fn asking(thrust: f64, torque: [f64; 3]) -> Command<f64> {
+    let [x, y, z] = torque;
+    Command { wrench: Wrench { thrust, torque: body(x, y, z) }, ..Command::default() }
+}
+
+fn rotors() -> Actuation<f64> {
+    named::<ActuationSettings>("rotors").build(&vehicle())
+}
+
+#[test]
+fn the_lagged_torque_follows_its_exponential_exactly() {
+    for (lag, h) in [(0.02, 5e-4), (0.05, 1e-3), (0.02, 0.1)] {
+        let mut actuation =
+            ActuationSettings::LaggedWrench(lagged_wrench::Gains { lag }, ()).build(&vehicle());
+        let state = State::default();
+        actuation.command(&asking(5.0, [0.3, -0.2, 0.1]), &vehicle());
+        assert_eq!(actuation.thrust(&state), 5.0, "thrust acts at once");
+        assert_eq!(actuation.torque(&state).norm(), 0.0, "torque does not");
+        for k in 1..=400 {
+            actuation.pass(h);
+            let share = 1.0 - (-h * f64::from(k) / lag).exp();
+            let off = actuation.torque(&state) - body(0.3, -0.2, 0.1) * share;
+            assert!(off.norm() < 1e-14, "{lag} s, step {k}: {:e}", off.norm());
+        }
+    }
+}
+
+#[test]
+fn a_rotor_follows_the_polynomial_of_its_integrator_and_so_its_exponential() {
+    let (vehicle, mut actuation) = (vehicle(), rotors());
+    actuation.command(&asking(8.0, [0.0; 3]), &vehicle);
+    let held = Held::new(&vehicle, &Push::default());
+    let target = (8.0 / 4.0 / vehicle.thrust_coefficient).sqrt();
+    let start = 1000.0;
+    let z: f64 = -5e-4 / vehicle.motor_lag;
+    // Runge-Kutta of order 4 multiplies the distance by this in every step.
+    let factor = 1.0 + z + z * z / 2.0 + z.powi(3) / 6.0 + z.powi(4) / 24.0;
+    let mut state = State { rotor_speed: [start; 4], ..State::default() };
+    for k in 1..=400 {
+        state = runge_kutta(&state, 5e-4, &vehicle, &actuation, &held);
+        let want = target + (start - target) * factor.powi(k);
+        for speed in state.rotor_speed {
+            assert!((speed / want - 1.0).abs() < 1e-13, "step {k}");
+            // Which is the exponential but for |z|^5/120 in every step: 8e-11.
+            let exact = target + (start - target) * (z * f64::from(k)).exp();
+            let room = (start - target).abs() * f64::from(k) * (-z).powi(5) / 120.0 + 1e-11;
+            assert!((speed - exact).abs() < room, "step {k}: {:e}", speed - exact);
+        }
+    }
+}
+
+#[test]
+fn a_finely_stepped_rotor_has_the_exponential_to_a_part_in_1e12() {
+    let (vehicle, mut actuation) = (vehicle(), rotors());
+    actuation.command(&asking(8.0, [0.0; 3]), &vehicle);
+    let held = Held::new(&vehicle, &Push::default());
+    let target = (8.0 / 4.0 / vehicle.thrust_coefficient).sqrt();
+    let mut state = State { rotor_speed: [1000.0; 4], ..State::default() };
+    for k in 1..=2000u32 {
+        state = runge_kutta(&state, 2e-5, &vehicle, &actuation, &held);
+        let exact = target + (1000.0 - target) * (-2e-5 * f64::from(k) / 0.02).exp();
+        assert!((state.rotor_speed[2] / exact - 1.0).abs() < 1e-12, "step {k}");
+    }
+}
+
+#[test]
+fn the_wrench_of_the_rotors_is_that_of_the_article_s_equations() {
+    for name in VehicleSettings::NAMES {
+        let vehicle = VehicleSettings::named(name).expect("a preset").vehicle;
+        let actuation = named::<ActuationSettings>("rotors").build(&vehicle);
+        let w = [1100.0, 1700.0, 1450.0, 900.0];
+        let state = State { rotor_speed: w, ..State::default() };
+        let [s1, s2, s3, s4] = w.map(|w| w * w);
+        let (k, l) = (7.2e-7, 0.1275);
+        let c = if *name == "article" { 1.98e-6 } else { 1.98e-8 };
+        let thrust = k * (s1 + s2 + s3 + s4);
+        let torque = body(l * k * (-s2 + s4), l * k * (-s1 + s3), c * (-s1 + s2 - s3 + s4));
+        assert!((actuation.thrust(&state) / thrust - 1.0).abs() < 1e-15, "{name}");
+        assert!((actuation.torque(&state) - torque).norm() < 1e-14, "{name}");
+    }
+}
+
+#[test]
+fn hover_speed_carries_the_weight() {
+    // Theory 1.2: 1458.3 rad/s.
+    assert!((vehicle().hover_speed() - 1458.3).abs() < 0.05);
+    let state = State { rotor_speed: [vehicle().hover_speed(); 4], ..State::default() };
+    assert!((rotors().thrust(&state) - 0.625 * 9.8).abs() < 1e-14);
+}
+
+#[test]
+fn nothing_is_refused_and_no_rotor_counts_as_limited_inside_the_limits() {
+    let mut rotors = rotors();
+    for (thrust, torque) in [
+        (6.125, [0.0; 3]),
+        (6.125, [0.1, -0.1, 0.01]),
+        (12.0, [-0.05, 0.2, -0.02]),
+        (2.0, [0.03, 0.0, 0.005]),
+    ] {
+        let refused = rotors.command(&asking(thrust, torque), &vehicle());
+        // Zero up to the rounding of B B^-1.
+        assert!(refused.thrust.abs() < 1e-14 && refused.torque.norm() < 1e-15, "{refused:?}");
+        assert_eq!(rotors.saturation(), 0.0);
+    }
+}
+
+#[test]
+fn the_refused_part_is_the_command_less_what_the_limits_allow() {
+    let (vehicle, mut rotors) = (vehicle(), rotors());
+    let highest = 7.2e-7 * 2917.0 * 2917.0;
+    let refused = rotors.command(&asking(30.0, [0.0; 3]), &vehicle);
+    assert!((refused.thrust - (30.0 - 4.0 * highest)).abs() < 1e-13, "{refused:?}");
+    assert_eq!(rotors.saturation(), 1.0, "all four at their limit");
+    let lowest = 7.2e-7 * 150.0 * 150.0;
+    let refused = rotors.command(&asking(-1.0, [0.0; 3]), &vehicle);
+    assert!((refused.thrust - (-1.0 - 4.0 * lowest)).abs() < 1e-14, "{refused:?}");
+    assert_eq!(rotors.saturation(), 1.0);
+    // A roll beyond the room of one pair: its two rotors are at their limits, and the other two
+    // share the thrust between them.
+    let refused = rotors.command(&asking(0.5 * 4.0 * highest, [2.0, 0.0, 0.0]), &vehicle);
+    let most = 0.1275 * (highest - lowest);
+    assert!((refused.torque.x - (2.0 - most)).abs() < 1e-14, "{refused:?}");
+    assert_eq!(rotors.saturation(), 0.5);
+}
+
+#[test]
+fn the_ideal_kinds_refuse_nothing() {
+    for kind in ["thrust-vector", "wrench", "lagged-wrench"] {
+        let mut actuation = named::<ActuationSettings>(kind).build(&vehicle());
+        let refused = actuation.command(&asking(-1e3, [50.0, 0.0, 1.0]), &vehicle());
+        assert_eq!((refused.thrust, refused.torque.norm()), (0.0, 0.0), "{kind}");
+        assert_eq!(actuation.saturation(), 0.0, "{kind}");
+    }
+}
+
+#[test]
+fn thrust_acts_along_the_body_s_own_axis() {
+    let (vehicle, mut actuation) =
+        (vehicle(), named::<ActuationSettings>("wrench").build(&vehicle()));
+    actuation.command(&asking(5.0, [0.0; 3]), &vehicle);
+    // Rolled by 90 deg: the up axis points to the right, -y.
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let attitude = stormpetrel_control::math::Rotation::from_quaternion(half, half, 0.0, 0.0);
+    let state = State { attitude, ..State::default() };
+    let a = actuation.thrust_per_mass(&state, &vehicle);
+    assert!((a - Vec3::new(0.0, -5.0 / 0.625, 0.0)).norm() < 1e-14, "{a:?}");
+}

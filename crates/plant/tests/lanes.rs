@@ -1,0 +1,144 @@
+//! Eight flights side by side have the bits of eight single flights, whatever becomes of each.
+//!
+//! The eight differ in mass, inertia, gains, disturbance and time step; one leaves its limits half
+//! way, one is pushed so hard that its state overflows.
+
+mod common;
+
+use common::{Scene, bits, body, gains, hosm, named, rotation_reference, step};
+use stormpetrel_control::attitude_reference::Rates;
+use stormpetrel_control::lanes::Lanes;
+use stormpetrel_control::observer::ObserverSettings;
+use stormpetrel_control::observer::hosm::{Input, Z2};
+use stormpetrel_control::record::RecordExt;
+use stormpetrel_plant::flight::{Cause, Flight};
+
+const LANES: usize = 8;
+const TICKS: u64 = 2000;
+
+fn scene(i: usize, actuation: &str, observer: ObserverSettings) -> Scene {
+    let x = i as f64;
+    let mut scene = Scene {
+        actuation: named(actuation),
+        observer,
+        position: gains(5.0 + 0.3 * x, 2.0 - 0.1 * x, 3.5 + 0.2 * x),
+        ..Scene::default()
+    };
+    scene.vehicle.mass = 0.5 + 0.05 * x;
+    scene.vehicle.inertia = body(2.4e-3 + 1e-5 * x, 2.5e-3, 2.6e-3 + 2e-5 * x);
+    scene.vehicle.motor_lag = 0.015 + 1e-3 * x;
+    scene.disturbance.force = scene.disturbance.force * (0.2 * x);
+    scene.disturbance.torque = scene.disturbance.torque * (0.3 * x);
+    scene.disturbance.frequency = 0.7 + 0.1 * x;
+    scene.control_step = 1e-3 - 2e-5 * x;
+    scene
+}
+
+fn singles(actuation: &str, observer: ObserverSettings) -> [Flight<f64>; LANES] {
+    core::array::from_fn(|i| {
+        let mut scene = scene(i, actuation, observer);
+        if i == 6 {
+            scene.disturbance.acceleration.x = 1e306;
+            scene.disturbance.force.x = 1e308;
+            scene.disturbance.offset = -1.0; // -1 + sin t + cos t: zero at first, then growing
+            scene.disturbance.torque.x = 1e305;
+        }
+        let mut flight = scene.flight();
+        if i == 3 {
+            flight.limits.position_error = 0.01;
+        }
+        flight
+    })
+}
+
+fn compare(actuation: &str, observer: ObserverSettings) {
+    let mut singles = singles(actuation, observer);
+    let mut lanes: Flight<Lanes<f64, LANES>> =
+        RecordExt::<f64>::gather(core::array::from_fn(|i| &singles[i]));
+    for tick in 0..TICKS {
+        let decided = lanes.decide();
+        lanes.advance(&decided);
+        for (i, single) in singles.iter_mut().enumerate() {
+            if tick % 50 == 7 {
+                let one = single.decide();
+                assert_eq!(
+                    bits(&decided.pick(i)),
+                    bits(&one),
+                    "{actuation}, lane {i}, tick {tick}"
+                );
+                single.advance(&one);
+                assert_eq!(
+                    bits(&lanes.pick(i)),
+                    bits(single),
+                    "{actuation}, lane {i}, tick {tick}"
+                );
+            } else {
+                step(single);
+            }
+            let state = lanes.state.pick(i);
+            assert_eq!(bits(&state), bits(&single.state), "{actuation}, lane {i}, tick {tick}");
+        }
+    }
+    let cause = |i: usize| Cause::from_code(singles[i].cause);
+    assert_eq!(cause(3), Some(Cause::PositionError), "{actuation}: lane 3 fails on its way");
+    assert!(singles[3].flown > 20.0 && singles[3].flown < TICKS as f64);
+    assert_ne!(cause(6), None, "{actuation}: lane 6 is torn apart");
+    for i in [0, 1, 2, 4, 5, 7] {
+        assert_eq!(cause(i), None, "{actuation}: lane {i} flies on");
+        assert_eq!(singles[i].flown, TICKS as f64);
+    }
+}
+
+fn all_observers(actuation: &str) {
+    for observer in [
+        named("none"),
+        hosm(1.5, Input::Measured, Z2::Single),
+        hosm(2.0, Input::Commanded, Z2::Doubled),
+    ] {
+        compare(actuation, observer);
+    }
+}
+
+#[test]
+fn eight_point_masses_have_the_bits_of_single_ones() {
+    all_observers("thrust-vector");
+}
+
+#[test]
+fn eight_flights_with_ideal_wrench_have_the_bits_of_single_ones() {
+    all_observers("wrench");
+}
+
+#[test]
+fn eight_flights_with_lagged_wrench_have_the_bits_of_single_ones() {
+    all_observers("lagged-wrench");
+}
+
+#[test]
+fn eight_flights_on_rotors_have_the_bits_of_single_ones() {
+    all_observers("rotors");
+}
+
+#[test]
+fn eight_flights_with_other_laws_have_the_bits_of_single_ones() {
+    for (rates, attitude, rate) in
+        [(Rates::Commanded, "euler", "pid"), (Rates::Trajectory, "tilt-priority", "pid")]
+    {
+        let mut singles: [Flight<f64>; LANES] = core::array::from_fn(|i| {
+            let mut scene = scene(i, "rotors", named("none"));
+            scene.attitude_reference = rotation_reference(rates);
+            (scene.attitude, scene.rate) = (named(attitude), named(rate));
+            scene.flight()
+        });
+        let mut lanes: Flight<Lanes<f64, LANES>> =
+            RecordExt::<f64>::gather(core::array::from_fn(|i| &singles[i]));
+        for tick in 0..TICKS / 4 {
+            let decided = lanes.decide();
+            lanes.advance(&decided);
+            for (i, single) in singles.iter_mut().enumerate() {
+                step(single);
+                assert_eq!(bits(&lanes.state.pick(i)), bits(&single.state), "lane {i}, {tick}");
+            }
+        }
+    }
+}
