@@ -1,5 +1,7 @@
 //! The task runner: `cargo xtask test` is everything that must hold before a change lands.
 
+mod bench;
+mod portable;
 mod run;
 mod schema;
 
@@ -14,6 +16,8 @@ cargo xtask <task>
   lint       formatting, clippy, documentation, all without warnings
   unit       tests of all crates in debug and release
   schema     is scenarios/schema.json what the program prints? (`schema --write` renews it)
+  targets    control and plant build for microcontroller and browser, without std
+  hash       do native, lanes and WASM give the bits in scenarios/experiment.hash? (`hash --write`)
   bench      measure and write docs/benchmarks.md
 ";
 
@@ -24,6 +28,10 @@ fn main() -> ExitCode {
         ["test"] => test(),
         ["lint"] => lint(),
         ["unit"] => unit(),
+        ["targets"] => portable::targets(),
+        ["hash"] => portable::hash(),
+        ["hash", "--write"] => portable::write_hash(),
+        ["bench"] => bench::bench(),
         ["schema"] => schema::check(),
         ["schema", "--write"] => schema::write(),
         _ => {
@@ -43,7 +51,9 @@ fn main() -> ExitCode {
 fn test() -> Result<(), String> {
     lint()?;
     schema::check()?;
-    unit()
+    unit()?;
+    portable::targets()?;
+    portable::hash()
 }
 
 fn lint() -> Result<(), String> {

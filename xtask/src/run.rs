@@ -34,12 +34,6 @@ impl Step {
         self
     }
 
-    /// The same in a folder below the root.
-    pub fn within(mut self, folder: &str) -> Self {
-        self.command.current_dir(root().join(folder));
-        self
-    }
-
     /// Runs it; what it prints goes to the screen.
     pub fn run(mut self) -> Result<(), String> {
         let begin = Instant::now();
@@ -63,6 +57,7 @@ impl Step {
     }
 
     fn refused(&self, error: &std::io::Error) -> String {
-        format!("{}: cannot start {:?}: {error}", self.title, self.command.get_program())
+        let program = self.command.get_program().to_string_lossy();
+        format!("{}: cannot start {program}: {error}", self.title)
     }
 }

@@ -1,4 +1,7 @@
 //! The commands as a user runs them: what they print, what they write, how they end.
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -22,6 +22,12 @@ pub use self::software::{sqrt_f32, sqrt_f64};
 
 /// The root in integer arithmetic.
 #[cfg_attr(feature = "std", allow(dead_code))] // with `std` only the test below compares it
+#[allow(
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss,
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "exponents fit by construction; NaN must take the first branch"
+)]
 mod software {
     macro_rules! software_root {
         ($(#[$doc:meta])* $name:ident, $float:ident, $bits:ident, $mantissa:literal, $bias:literal) => {
@@ -77,6 +83,7 @@ mod software {
 }
 
 #[cfg(test)]
+#[allow(clippy::cast_possible_truncation, reason = "the upper half is what is wanted")]
 mod tests {
     use super::software;
 

@@ -2,6 +2,10 @@
 //! have the bits of eight single runs, `reset` leaves nothing of the past, and a law stays small.
 //!
 //! A law added to a registry is tested here without a word in this file.
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
+#![allow(clippy::extra_unused_type_parameters)] // one macro calls both checks alike
 
 mod common;
 

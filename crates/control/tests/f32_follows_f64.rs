@@ -9,7 +9,9 @@
 //! * with it, 0.02 m/s^2 of force: the sliding mode chatters by 1.1 L dt = 1.7e-3 a tick, out of
 //!   step in the two, and takes the rounding of the position, eps = 2.4e-7 m, for noise; its
 //!   accuracy is of the order L^(2/3) eps^(1/3) = 8e-3 (Levant 2003).
-#![allow(clippy::disallowed_methods)] // the standard functions are the independent source
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
 
 mod common;
 

@@ -1,7 +1,9 @@
 //! The Butterworth filter against the analytic magnitude of its bilinear form.
 //!
 //! With w = tan(pi f T)/tan(pi f_c T):  |H(f)|^2 = 1/(1 + w^4)  (Butterworth, order 2, prewarped).
-#![allow(clippy::disallowed_methods)] // the standard functions are the independent source
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 

@@ -1,6 +1,8 @@
 //! The attitude reference: flatness rates against finite differences, continuity through
 //! inversion, and what the article's arctangent does below the horizon.
-#![allow(clippy::disallowed_methods)] // the standard functions are the independent source
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
 
 mod common;
 

@@ -2,7 +2,9 @@
 //!
 //! The body turns by the torque of the last interval, J omega' = tau + d; the law believes the
 //! inertia to be I. lambda = I/J is the ratio of real to believed effectiveness.
-#![allow(clippy::disallowed_methods)] // the standard functions are the independent source
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
 
 use stormpetrel_control::controller::Guarded;
 use stormpetrel_control::math::Vec3;

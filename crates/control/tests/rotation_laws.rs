@@ -2,7 +2,9 @@
 //!
 //! Quaternions are drawn from the whole unit sphere, with half turns and tiny angles more often
 //! than chance would have them.
-#![allow(clippy::disallowed_methods)] // the standard functions are the independent source
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;

@@ -5,7 +5,10 @@
 //! points over each documented range, and the hard ones (nearest doubles to multiples of pi/2, both
 //! ends of each range, where the method changes). Dense points compare with the crate libm, whose
 //! own error is below 1 ulp. Singles compare with libm in double precision.
-#![allow(clippy::unwrap_used, clippy::float_cmp, clippy::print_stdout)]
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
+#![allow(clippy::print_stdout, clippy::unwrap_used)] // the largest errors are worth seeing
 
 use std::collections::BTreeMap;
 

@@ -1,7 +1,9 @@
 //! The tilt-prioritised attitude error: its two parts, its sign, and its behaviour upside down.
 //!
 //! With K1 = 1 and a resting reference the law's rate is the negative error, 2 (x_t, y_t, z_y).
-#![allow(clippy::disallowed_methods)] // the standard functions are the independent source
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
 
 mod common;
 

@@ -101,12 +101,21 @@ pub fn fly_batch(scenarios: &[Scenario]) -> Vec<Outcome> {
 
 /// [`fly_batch`] at a given width.
 pub fn fly_batch_at(scenarios: &[Scenario], width: Width) -> Vec<Outcome> {
+    batches(scenarios, width, true)
+}
+
+/// [`fly_batch`] with the metrics of the position only: attitude metrics cost as much as a law.
+pub fn fly_batch_position(scenarios: &[Scenario]) -> Vec<Outcome> {
+    batches(scenarios, Width::widest(), false)
+}
+
+fn batches(scenarios: &[Scenario], width: Width, attitude: bool) -> Vec<Outcome> {
     let mut outcomes = Vec::with_capacity(scenarios.len());
     for group in scenarios.chunk_by(|a, b| a.structure() == b.structure()) {
         for batch in group.chunks(LANES) {
             match batch {
-                [alone] => outcomes.push(fly(alone, |_, _| {})),
-                batch => outcomes.extend(width.run(Batch::new(batch))),
+                [alone] if attitude => outcomes.push(fly(alone, |_, _| {})),
+                batch => outcomes.extend(width.run(Batch::new(batch, attitude))),
             }
         }
     }
@@ -124,7 +133,7 @@ struct Batch {
 }
 
 impl Batch {
-    fn new(batch: &[Scenario]) -> Self {
+    fn new(batch: &[Scenario], attitude: bool) -> Self {
         // Missing vehicles are doubles of the last: their results are dropped.
         let last = batch.len() - 1;
         let row = |i: usize| &batch[if i < last { i } else { last }];
@@ -134,7 +143,7 @@ impl Batch {
             dt: each(|s| s.run.control_step),
             late: each(|s| s.run.late),
             gravity: each(|s| s.model.gravity),
-            has_attitude: row(0).has_attitude(),
+            has_attitude: attitude && row(0).has_attitude(),
         };
         Self {
             count: batch.len(),

@@ -73,7 +73,7 @@ impl<W: Write> Csv<W> {
     /// # Errors
     /// What the writer says.
     pub fn push(&mut self, tick: &Tick<f64>) -> io::Result<()> {
-        let wanted = self.seen % self.every == 0;
+        let wanted = self.seen.is_multiple_of(self.every);
         self.seen += 1;
         if !wanted {
             return Ok(());

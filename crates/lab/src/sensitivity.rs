@@ -7,7 +7,7 @@
 use stormpetrel_control::math::Vec3;
 use stormpetrel_control::real::Real;
 
-use crate::fly::{LANES, Outcome, fly_batch};
+use crate::fly::{LANES, Outcome, fly_batch, fly_batch_position};
 use crate::scenario::Scenario;
 
 /// How far a start is moved, m.
@@ -70,7 +70,7 @@ fn nudged(scenario: &Scenario, i: usize) -> Scenario {
 pub fn spread(scenario: &Scenario) -> Option<Spread> {
     let mut first = vec![scenario.clone()];
     first.extend((0..LANES - 1).map(|i| nudged(scenario, i)));
-    let probe = fly_batch(&first);
+    let probe = fly_batch_position(&first);
     let iae = |outcome: &Outcome| outcome.get("position.iae").unwrap_or(0.0);
     let nominal = iae(&probe[0]);
     let steady = probe.iter().all(|outcome| {

@@ -63,7 +63,7 @@ impl Trace {
             self.first_peak = Some((tick.time, self.last_error));
         }
         self.last_error = errors.position;
-        if self.seen % self.stride == 0 {
+        if self.seen.is_multiple_of(self.stride) {
             self.time.push(tick.time);
             push(&mut self.position, tick.position);
             push(&mut self.reference, tick.reference.position);

@@ -1,4 +1,7 @@
 //! Metrics against closed forms, on signals that no flight is needed for.
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
 
 use stormpetrel_control::math::{Euler, Rotation, Vec3};
 use stormpetrel_lab::metric::{Distribution, Setting, Sums, metrics};

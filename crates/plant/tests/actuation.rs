@@ -1,5 +1,7 @@
 //! Lags, limits and reports of the actuation, against closed forms and the article's equations.
-#![allow(clippy::disallowed_methods)] // the standard functions are the independent source
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
 
 mod common;
 

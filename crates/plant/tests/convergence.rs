@@ -1,7 +1,9 @@
 //! The integrator has order four: for the body alone, with forces, and with rotors that lag.
 //!
 //! The order is the least-squares slope of the error against the step on a ladder of five.
-#![allow(clippy::disallowed_methods)] // the standard functions are the independent source
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
 
 mod common;
 

@@ -1,6 +1,8 @@
 //! References and disturbances: every derivative is the derivative of the one before, and values are
 //! those of the article.
-#![allow(clippy::disallowed_methods)] // the standard functions are the independent source
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
 
 mod common;
 

@@ -1,7 +1,9 @@
 //! The rigid body against exact solutions: NESC check-case 2 and the tops of reliability 1.2 and 1.4.
 //!
 //! All through `dynamics::runge_kutta`, without thrust, gravity and torque.
-#![allow(clippy::disallowed_methods)] // the standard functions are the independent source
+// Tests compare bits, take the standard library as their second opinion, and print figures as their
+// source prints them.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
 
 mod common;
 

@@ -182,6 +182,7 @@ impl<T: Real, A: Frame, B: Frame> Mul<Vec3<T, A>> for Rotation<T, A, B> {
     }
 }
 
+#[allow(clippy::mismatching_type_param_order)] // from A through B to C: the order is the meaning
 impl<T: Real, A: Frame, B: Frame, C: Frame> Mul<Rotation<T, A, B>> for Rotation<T, B, C> {
     type Output = Rotation<T, A, C>;
     #[inline(always)]

@@ -7,7 +7,7 @@ use stormpetrel_control::math::Vec3;
 use stormpetrel_control::real::Real;
 use stormpetrel_plant::disturbance::DisturbanceSettings;
 
-use crate::fly::{LANES, fly_batch};
+use crate::fly::{LANES, fly_batch_position};
 use crate::scenario::{File, Scenario};
 
 /// What a variant survived.
@@ -67,7 +67,7 @@ fn with_force(scenario: &Scenario, amplitude: f64) -> Scenario {
 pub fn search(scenario: &Scenario) -> Survival {
     let (mut survived, mut failed, mut cause) = (0.0, None, "");
     let (mut low, mut high) = (0.25, 16.0);
-    for round in 0..4 {
+    for round in 0..3 {
         let rung = |i: usize| {
             let part = i as f64 / (LANES - 1) as f64;
             if round == 0 {
@@ -80,7 +80,7 @@ pub fn search(scenario: &Scenario) -> Survival {
         let ladder: Vec<f64> = (0..LANES).map(rung).collect();
         let flights: Vec<_> = ladder.iter().map(|a| with_force(scenario, *a)).collect();
         let mut broken = false;
-        for (amplitude, outcome) in ladder.iter().zip(fly_batch(&flights)) {
+        for (amplitude, outcome) in ladder.iter().zip(fly_batch_position(&flights)) {
             match outcome.failure {
                 None if !broken => survived = *amplitude,
                 Some(failure) if !broken => {

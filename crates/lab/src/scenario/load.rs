@@ -130,7 +130,7 @@ fn variants<'a>(base: &'a Table, faults: &mut Vec<Fault>) -> Vec<Variant<'a>> {
                 ("set", Value::Table(set)) => row.set = Some(set),
                 ("expect", Value::Table(expect)) => row.expect = Some(expect),
                 ("title", other) => {
-                    faults.push(wrong_type(&entry.node.place, "variant.title", other, "text"))
+                    faults.push(wrong_type(&entry.node.place, "variant.title", other, "text"));
                 }
                 ("set" | "expect", other) => {
                     let field = format!("variant.{}", entry.key);

@@ -24,7 +24,7 @@ record! {
         /// Centre at the start.
         center: Vec3<T, World> [m] = 0.0, in -1e6 => 1e6;
         /// Heading at the start.
-        yaw: T [rad] = 0.0, in -6.2832 => 6.2832;
+        yaw: T [rad] = 0.0, in -6.3 => 6.3;
         /// Rate of the heading.
         yaw_rate: T [rad/s] = 0.0, in -1e2 => 1e2;
     }

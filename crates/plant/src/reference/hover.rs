@@ -16,7 +16,7 @@ record! {
         /// The point.
         position: Vec3<T, World> [m] = 0.0, in -1e6 => 1e6;
         /// The heading.
-        yaw: T [rad] = 0.0, in -6.2832 => 6.2832;
+        yaw: T [rad] = 0.0, in -6.3 => 6.3;
     }
 }
 
