@@ -7,7 +7,7 @@
 use stormpetrel_control::math::Vec3;
 use stormpetrel_control::real::Real;
 
-use crate::fly::{LANES, Outcome, fly_batch, fly_batch_position};
+use crate::fly::{LANES, Outcome, fly_batch, fly_batch_position, on_all_cores};
 use crate::scenario::Scenario;
 
 /// How far a start is moved, m.
@@ -66,22 +66,45 @@ fn nudged(scenario: &Scenario, i: usize) -> Scenario {
     moved
 }
 
-/// The spread of a sensitive flight; `None` where the flight is a number.
-pub fn spread(scenario: &Scenario) -> Option<Spread> {
-    let mut first = vec![scenario.clone()];
-    first.extend((0..LANES - 1).map(|i| nudged(scenario, i)));
-    let probe = fly_batch_position(&first);
-    let iae = |outcome: &Outcome| outcome.get("position.iae").unwrap_or(0.0);
-    let nominal = iae(&probe[0]);
-    let steady = probe.iter().all(|outcome| {
-        (iae(outcome) - nominal).abs() <= TOLERANCE * Real::max(nominal, 1e-6)
-            && outcome.failure.map(|f| f.cause) == probe[0].failure.map(|f| f.cause)
+/// The spread of every sensitive flight; `None` for a flight that is a number. Each scenario is flown
+/// twice, from its start and from 1e-9 m beside it; pairs of one structure share the lanes.
+pub fn spreads(scenarios: &[Scenario]) -> Vec<Option<Spread>> {
+    let mut order: Vec<usize> = (0..scenarios.len()).collect();
+    order.sort_by_cached_key(|i| scenarios[*i].structure());
+    let same = |a: &usize, b: &usize| scenarios[*a].structure() == scenarios[*b].structure();
+    let batches: Vec<&[usize]> =
+        order.chunk_by(same).flat_map(|group| group.chunks(LANES / 2)).collect();
+    let probed = on_all_cores(&batches, |batch| {
+        let pair = |i: &usize| [scenarios[*i].clone(), nudged(&scenarios[*i], 0)];
+        let pairs: Vec<Scenario> = batch.iter().flat_map(pair).collect();
+        fly_batch_position(&pairs)
     });
-    if steady {
-        return None;
+    let mut sensitive = vec![false; scenarios.len()];
+    for (i, pair) in order.iter().zip(probed.concat().chunks(2)) {
+        sensitive[*i] = pair.first().zip(pair.last()).is_some_and(|(a, b)| differ(a, b));
     }
+    let all: Vec<_> = scenarios.iter().zip(sensitive).collect();
+    let spread =
+        |(scenario, sensitive): &(&Scenario, bool)| sensitive.then(|| over_starts(scenario));
+    on_all_cores(&all, spread)
+}
+
+/// The spread of one flight; `None` where it is a number.
+pub fn spread(scenario: &Scenario) -> Option<Spread> {
+    spreads(std::slice::from_ref(scenario)).pop().flatten()
+}
+
+/// Whether two outcomes differ by more than the tolerance, or one alone failed.
+fn differ(a: &Outcome, b: &Outcome) -> bool {
+    let iae = |outcome: &Outcome| outcome.get("position.iae").unwrap_or(0.0);
+    // Below a nanometre over a second there is nothing to compare.
+    (iae(a) - iae(b)).abs() > TOLERANCE * Real::max(iae(a), 1e-6)
+        || a.failure.map(|f| f.cause) != b.failure.map(|f| f.cause)
+}
+
+/// All metrics from 32 starts that nobody could tell apart.
+fn over_starts(scenario: &Scenario) -> Spread {
     let starts: Vec<_> = (0..STARTS).map(|i| nudged(scenario, i)).collect();
     let batches: Vec<_> = starts.chunks(LANES).collect();
-    let outcomes = crate::fly::on_all_cores(&batches, |batch| fly_batch(batch));
-    Some(Spread { outcomes: outcomes.concat() })
+    Spread { outcomes: on_all_cores(&batches, |batch| fly_batch(batch)).concat() }
 }

@@ -11,7 +11,7 @@ pub use tables::{Table, row, tables};
 use crate::fly::{Outcome, fly, on_all_cores};
 use crate::scenario::Scenario;
 use crate::scenario::fault::Faults;
-use crate::sensitivity::{Spread, spread};
+use crate::sensitivity::{Spread, spreads};
 use crate::shipped::{SHIPPED, shipped};
 use crate::trace::Trace;
 use sweep::Survival;
@@ -50,13 +50,6 @@ impl Flown {
     pub fn variant(&self) -> &str {
         self.scenario.name.split_once(':').map_or(self.scenario.name.as_str(), |(_, v)| v)
     }
-}
-
-/// Flies a scenario and finds out whether it is sensitive; the trace keeps about `points` points.
-pub fn judge(scenario: &Scenario, points: u64) -> Flown {
-    let mut trace = Trace::new(scenario.ticks(), points);
-    let outcome = fly(scenario, |tick, errors| trace.push(tick, errors));
-    Flown { scenario: scenario.clone(), outcome, spread: spread(scenario), trace }
 }
 
 /// All flights of one article file.
@@ -115,14 +108,27 @@ pub fn reproduce(done: impl Fn(usize) + Sync + Send) -> Result<Story, Faults> {
         }
     }
     let plan = sweep::plan(&files);
-    let scenarios: Vec<&Scenario> = files.iter().flat_map(|(_, file)| &file.scenarios).collect();
+    let scenarios: Vec<Scenario> =
+        files.iter().flat_map(|(_, file)| file.scenarios.iter().cloned()).collect();
     let total = scenarios.len() + plan.len();
-    let mut flights = on_all_cores(&scenarios, |scenario| {
-        let flown = judge(scenario, POINTS);
+    let flown = on_all_cores(&scenarios, |scenario| {
+        let mut trace = Trace::new(scenario.ticks(), POINTS);
+        let outcome = fly(scenario, |tick, errors| trace.push(tick, errors));
         done(total);
-        flown
-    })
-    .into_iter();
+        (outcome, trace)
+    });
+    let mut flights = scenarios
+        .iter()
+        .zip(flown)
+        .zip(spreads(&scenarios))
+        .map(|((scenario, (outcome, trace)), spread)| Flown {
+            scenario: scenario.clone(),
+            outcome,
+            spread,
+            trace,
+        })
+        .collect::<Vec<_>>()
+        .into_iter();
     let survival = on_all_cores(&plan, |entry| {
         let found = sweep::search(entry);
         done(total);
