@@ -4,7 +4,7 @@
 //!   v1  = -lambda1 L^(1/2) [z1 - v0]^(1/2) + z2,   z1' = v1 + u         (2)
 //!   z2' = -lambda0 L [z2 - v1]^0                                        (3)
 //!
-//! with [a]^p = |a|^p sign(a). z0, z1, z2 estimate position, velocity and disturbance.
+//! with `[a]^p` = |a|^p sign(a). z0, z1, z2 estimate position, velocity and disturbance.
 //!
 //! | article | here      | unit  | frame |
 //! |---------|-----------|-------|-------|
