@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 
 /// Longest side of an image in pixels.
@@ -65,11 +65,12 @@ pub fn png(svg: &str, scale: f32) -> Result<Vec<u8>, PngError> {
     let tree = Tree::from_str(svg, &options).map_err(|e| PngError::Svg(e.to_string()))?;
     let (width, height) = (tree.size().width() * scale, tree.size().height() * scale);
     let mut image = Pixmap::new(pixels(width)?, pixels(height)?).ok_or(PngError::Size)?;
+    image.fill(Color::WHITE); // the file has no transparency
     resvg::render(&tree, Transform::from_scale(scale, scale), &mut image.as_mut());
     encode(&image).map_err(|e| PngError::Encode(e.to_string()))
 }
 
-/// Writes the image without its alpha channel (the background is white) and with the fast
+/// Writes the image without its alpha channel (the background was painted) and with the fast
 /// compression: 2 ms in place of 19 ms for a large figure, at 1.6 times the size.
 fn encode(image: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
     let mut file = Vec::new();
