@@ -73,8 +73,8 @@ impl<T: Real> Actuate<T> for Rotors<T> {
     #[inline(always)]
     fn command(&mut self, command: &Command<T>, _: &Vehicle<T>) -> Wrench<T> {
         let (thrusts, granted) = self.allocation.allocate(&command.wrench);
-        for i in 0..4 {
-            self.commanded[i] = (thrusts[i] * self.per_coefficient).sqrt(); // (1)
+        for (speed, thrust) in self.commanded.iter_mut().zip(thrusts) {
+            *speed = (thrust * self.per_coefficient).sqrt(); // (1)
         }
         let Allocation { lowest, highest, .. } = self.allocation;
         let mut limited = T::zero();
