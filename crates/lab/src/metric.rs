@@ -280,7 +280,7 @@ pub const OF_SIGNALS: [About; 7] = [
     About {
         name: "*.p95",
         unit: "*",
-        doc: "95th percentile of the absolute error (nearest bin of a logarithmic histogram: within 0.6 %)",
+        doc: "95th percentile of the absolute error (nearest bin of a logarithmic histogram: within 0.8 %)",
     },
 ];
 

@@ -39,14 +39,14 @@ fn a_constant_error_has_the_integrals_of_a_rectangle() {
     close(get("position.x.iae"), 0.6, 1e-12);
     close(get("position.z.max"), 0.4, 1e-15);
     close(get("time.flown"), 2.0, 1e-12);
-    close(get("position.p95"), 0.5, 0.006);
+    close(get("position.p95"), 0.5, 0.008);
 }
 
 #[test]
 fn a_ramp_has_the_percentile_and_late_maximum_of_a_ramp() {
     // e = t over 2 s: 95 % lie below 1.9; the late window (from 1 s) holds the maximum.
     let get = over(2000, |time, t| Tick { position: Vec3::new(time, 0.0, 0.0), ..t });
-    close(get("position.p95"), 1.9, 0.006);
+    close(get("position.p95"), 1.9, 0.008);
     close(get("position.late_max"), 1.999, 1e-12);
     let falling = over(2000, |time, t| Tick { position: Vec3::new(2.0 - time, 0.0, 0.0), ..t });
     close(falling("position.max"), 2.0, 1e-12);
