@@ -4,7 +4,7 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::run::{Step, root};
+use crate::run::{Step, root, target_dir};
 
 /// Measures and writes the tables.
 pub fn bench() -> Result<(), String> {
@@ -40,8 +40,7 @@ fn processor() -> String {
 
 /// Wall time (s) and largest resident size (MB) of `stormpetrel reproduce`.
 fn reproduce() -> Result<(f64, f64), String> {
-    let target =
-        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into);
+    let target = target_dir();
     let mut child = Command::new(target.join("release/stormpetrel"))
         .args(["reproduce", "--quiet", "--out"])
         .arg(target.join("bench-report"))

@@ -1,9 +1,14 @@
 //! The task runner: `cargo xtask test` is everything that must hold before a change lands.
 
 mod bench;
+mod binary;
+mod code;
+mod disassembly;
+mod firmware;
 mod portable;
 mod run;
 mod schema;
+mod symbols;
 
 use std::process::ExitCode;
 
@@ -12,13 +17,16 @@ use run::Step;
 const HELP: &str = "\
 cargo xtask <task>
 
-  test       everything below but bench: what the gate runs
-  lint       formatting, clippy, documentation, all without warnings
-  unit       tests of all crates in debug and release
-  schema     is scenarios/schema.json what the program prints? (`schema --write` renews it)
-  targets    control and plant build for microcontroller and browser, without std
-  hash       do native, lanes and WASM give the bits in scenarios/experiment.hash? (`hash --write`)
-  bench      measure and write docs/benchmarks.md
+  test         everything below but bench: what the gate runs
+  lint         formatting, clippy, documentation, all without warnings
+  unit         tests of all crates in debug and release
+  schema       is scenarios/schema.json what the program prints? (`schema --write` renews it)
+  disassembly  is the loop over eight lanes one function for each register width, nothing fused?
+  targets      control and plant build for microcontroller and browser, without std
+  firmware     do recorded flights give the same bits on a Cortex-M4F? (in QEMU)
+  symbols      is the control stack on a microcontroller free of panics and heap?
+  hash         do native, lanes and WASM give the bits in scenarios/experiment.hash? (`hash --write`)
+  bench        measure and write docs/benchmarks.md
 ";
 
 fn main() -> ExitCode {
@@ -31,6 +39,9 @@ fn main() -> ExitCode {
         ["targets"] => portable::targets(),
         ["hash"] => portable::hash(),
         ["hash", "--write"] => portable::write_hash(),
+        ["disassembly"] => disassembly::check(),
+        ["firmware"] => firmware::replay(),
+        ["symbols"] => symbols::check(),
         ["bench"] => bench::bench(),
         ["schema"] => schema::check(),
         ["schema", "--write"] => schema::write(),
@@ -52,7 +63,10 @@ fn test() -> Result<(), String> {
     lint()?;
     schema::check()?;
     unit()?;
+    disassembly::check()?;
     portable::targets()?;
+    firmware::replay()?;
+    symbols::check()?;
     portable::hash()
 }
 
@@ -62,7 +76,8 @@ fn lint() -> Result<(), String> {
         .run()?;
     Step::cargo("documentation", &["doc", "--workspace", "--no-deps"])
         .env("RUSTDOCFLAGS", "-D warnings")
-        .run()
+        .run()?;
+    firmware::lint()
 }
 
 fn unit() -> Result<(), String> {

@@ -3,16 +3,11 @@
 use std::fs;
 use std::path::PathBuf;
 
-use crate::run::{Step, root};
+use crate::firmware::BARE;
+use crate::run::{Step, install, root, target_dir};
 
-const BARE: &str = "thumbv7em-none-eabihf";
 const BROWSER: &str = "wasm32-unknown-unknown";
 const WASI: &str = "wasm32-wasip1";
-
-/// Adds a compilation target where it is missing.
-fn install(target: &str) -> Result<(), String> {
-    Step::new(&format!("target {target}"), "rustup", &["target", "add", target]).run()
-}
 
 /// Laws and plant build without the standard library, for a microcontroller and for a browser.
 pub fn targets() -> Result<(), String> {
@@ -56,9 +51,7 @@ fn wasm() -> Result<String, String> {
         WASI,
     ];
     Step::cargo("hash of the experiment for WASM", &build).run()?;
-    let target =
-        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
-    let program = target.join(WASI).join("release/experiment-hash.wasm");
+    let program = target_dir().join(WASI).join("release/experiment-hash.wasm");
     let program = program.to_string_lossy();
     Step::new(
         "hash of the experiment in WASM",

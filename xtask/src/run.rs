@@ -1,18 +1,30 @@
 //! Running other programs, with their name and time on the screen.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::time::Instant;
+use std::process::{Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
 
 /// The root of the project.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().map_or_else(PathBuf::new, Path::to_path_buf)
 }
 
+/// Where cargo puts what it builds.
+pub fn target_dir() -> PathBuf {
+    let named = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
+    root().join(named)
+}
+
+/// Adds a compilation target where it is missing.
+pub fn install(target: &str) -> Result<(), String> {
+    Step::new(&format!("target {target}"), "rustup", &["target", "add", target]).run()
+}
+
 /// One program run of a task.
 pub struct Step {
     title: String,
     command: Command,
+    limit: Option<Duration>,
 }
 
 impl Step {
@@ -20,7 +32,7 @@ impl Step {
     pub fn new(title: &str, program: &str, arguments: &[&str]) -> Self {
         let mut command = Command::new(program);
         command.args(arguments).current_dir(root());
-        Self { title: title.into(), command }
+        Self { title: title.into(), command, limit: None }
     }
 
     /// Cargo with arguments.
@@ -34,16 +46,41 @@ impl Step {
         self
     }
 
+    /// The same without input, ended by force after so many seconds.
+    pub fn within(mut self, seconds: u64) -> Self {
+        self.command.stdin(Stdio::null());
+        self.limit = Some(Duration::from_secs(seconds));
+        self
+    }
+
     /// Runs it; what it prints goes to the screen.
     pub fn run(mut self) -> Result<(), String> {
         let begin = Instant::now();
         eprintln!("== {}", self.title);
-        let status = self.command.status().map_err(|e| self.refused(&e))?;
+        let status = self.status(begin)?;
         if !status.success() {
             return Err(format!("{} failed ({status})", self.title));
         }
         eprintln!("== {}: good, {:.0} s", self.title, begin.elapsed().as_secs_f64());
         Ok(())
+    }
+
+    fn status(&mut self, begin: Instant) -> Result<ExitStatus, String> {
+        let mut child = self.command.spawn().map_err(|e| self.refused(&e))?;
+        let Some(limit) = self.limit else {
+            return child.wait().map_err(|e| self.refused(&e));
+        };
+        loop {
+            if let Some(status) = child.try_wait().map_err(|e| self.refused(&e))? {
+                return Ok(status);
+            }
+            if begin.elapsed() > limit {
+                let ended = child.kill().and_then(|()| child.wait());
+                ended.map_err(|e| self.refused(&e))?;
+                return Err(format!("{}: no end after {} s", self.title, limit.as_secs()));
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
     }
 
     /// Runs it and returns what it prints.

@@ -16,8 +16,9 @@
 //! limits whose equal thrusts give no torque.
 
 use crate::math::Vec3;
-use crate::real::Real;
+use crate::real::{Mask, Real};
 use crate::record;
+use crate::record::{RecordExt as _, each, from_index};
 use crate::signals::Wrench;
 
 record! {
@@ -34,44 +35,120 @@ record! {
     }
 }
 
-impl<T: Real> Allocation<T> {
-    /// Rotor thrusts within the limits, N, and the wrench that they make.
+record! {
+    /// What the rotors will give.
+    pub struct Allocated {
+        /// Thrust of each rotor.
+        thrusts: [T; 4] [N];
+        /// Share of the rotors at a limit.
+        saturation: T [1];
+        /// What was asked and is not granted; exactly zero where all of it is.
+        refused: Wrench<T> [];
+    }
+}
+
+record! {
+    /// Wished thrust of each rotor, by what it is for.
+    struct Wish {
+        /// To carry.
+        lift: [T; 4] [N];
+        /// To roll and pitch.
+        tilt: [T; 4] [N];
+        /// To yaw.
+        yaw: [T; 4] [N];
+    }
+}
+
+impl<T: Real> Wish<T> {
+    /// All of it.
     #[inline(always)]
-    pub fn allocate(&self, wrench: &Wrench<T>) -> ([T; 4], Wrench<T>) {
-        let share =
-            |c: usize, of: T| -> [T; 4] { crate::record::from_index(|i| self.inverse[i][c] * of) };
-        let lift = share(0, wrench.thrust); // (1)
+    fn thrusts(&self) -> [T; 4] {
+        from_index(|i| self.lift[i] + self.tilt[i] + self.yaw[i])
+    }
+}
+
+impl<T: Real> Allocation<T> {
+    /// Rotor thrusts within the limits, N, and the part of the wrench that was refused.
+    #[inline(always)]
+    pub fn allocate(&self, wrench: &Wrench<T>) -> Allocated<T> {
+        let wish = self.wish(wrench);
+        // The usual case; the long way ends in the same bits.
+        let mut allocated = Allocated {
+            thrusts: wish.thrusts(),
+            saturation: T::zero(),
+            refused: Wrench::default(),
+        };
+        if self.free(&wish).all() {
+            return allocated;
+        }
+        for i in 0..T::LANES {
+            self.pick(i).limited(&wish.pick(i), &wrench.pick(i)).put(&mut allocated, i);
+        }
+        allocated
+    }
+
+    /// What each rotor should give if there were no limits (1).
+    #[inline(always)]
+    fn wish(&self, wrench: &Wrench<T>) -> Wish<T> {
+        let share = |c: usize, of: T| -> [T; 4] { from_index(|i| self.inverse[i][c] * of) };
+        let lift = share(0, wrench.thrust);
         let (roll, pitch) = (share(1, wrench.torque.x), share(2, wrench.torque.y));
         let yaw = share(3, wrench.torque.z);
-        let tilt: [T; 4] = crate::record::from_index(|i| roll[i] + pitch[i]);
+        Wish { lift, tilt: from_index(|i| roll[i] + pitch[i]), yaw }
+    }
 
+    /// Whether every rotor stays inside its limits, so that nothing is refused.
+    #[inline(always)]
+    fn free(&self, wish: &Wish<T>) -> T::Mask {
+        let (least, most) = extremes(wish.thrusts());
+        self.lowest.lt(least) & most.lt(self.highest)
+    }
+
+    /// The way through (2) to (4).
+    #[inline(always)]
+    fn limited(&self, wish: &Wish<T>, wrench: &Wrench<T>) -> Allocated<T> {
+        let free = self.free(wish);
+        let Wish { lift, tilt, yaw } = *wish;
         let (low, high) = extremes(tilt);
         let room = self.highest - self.lowest;
         let scale = room.min(high - low) / (high - low).max(T::lit(1e-30));
         let scale = T::select(room.lt(high - low), scale, T::one()); // (2)
-        let tilt = crate::record::each(tilt, |u| u * scale);
-        let base: [T; 4] = crate::record::from_index(|i| lift[i] + tilt[i]);
-        let shift = self.raise(base, yaw)
-            - self.raise(
-                crate::record::each(base, |u| self.mirror(u)),
-                crate::record::each(yaw, |u| -u),
-            );
-        let base = crate::record::each(base, |u| u + shift); // (3)
+        let base: [T; 4] = from_index(|i| lift[i] + tilt[i] * scale);
+        let shift =
+            self.raise(base, yaw) - self.raise(each(base, |u| self.mirror(u)), each(yaw, |u| -u));
+        let base = each(base, |u| u + shift); // (3)
 
-        // The least of one and all headroom/wish, as a fraction: one division instead of four.
-        let (mut part, mut whole) = (T::one(), T::one());
+        let mut grant = T::one();
         for i in 0..4 {
             let headroom =
                 T::select(T::zero().lt(yaw[i]), self.highest - base[i], base[i] - self.lowest);
-            let (headroom, wish) = (headroom.max(T::zero()), yaw[i].abs());
-            let less = (headroom * whole).lt(part * wish);
-            (part, whole) = (T::select(less, headroom, part), T::select(less, wish, whole));
+            let share = headroom.max(T::zero()) / yaw[i].abs().max(T::lit(1e-30));
+            grant = grant.min(share); // (4)
         }
-        let grant = part / whole; // (4)
-        let thrusts: [T; 4] = crate::record::from_index(|i| {
-            (base[i] + yaw[i] * grant).clamp(self.lowest, self.highest)
-        });
-        (thrusts, self.wrench(thrusts))
+        let thrusts: [T; 4] =
+            from_index(|i| (base[i] + yaw[i] * grant).clamp(self.lowest, self.highest));
+        let granted = self.wrench(thrusts);
+        // A rotor put at its limit may miss it by a rounding error.
+        let margin = room * T::lit(1e-6);
+        let mut saturation = T::zero();
+        for u in thrusts {
+            let inside = (self.lowest + margin).lt(u) & u.lt(self.highest - margin);
+            saturation += T::select(inside, T::zero(), T::lit(0.25));
+        }
+        let refused = |asked: T, granted: T| T::select(free, T::zero(), asked - granted);
+        let Wrench { thrust, torque } = *wrench;
+        Allocated {
+            thrusts: from_index(|i| T::select(free, wish.thrusts()[i], thrusts[i])),
+            saturation: T::select(free, T::zero(), saturation),
+            refused: Wrench {
+                thrust: refused(thrust, granted.thrust),
+                torque: Vec3::new(
+                    refused(torque.x, granted.torque.x),
+                    refused(torque.y, granted.torque.y),
+                    refused(torque.z, granted.torque.z),
+                ),
+            },
+        }
     }
 
     /// The least common rise that brings every rotor to its lowest thrust, some share of yaw granted.

@@ -90,29 +90,38 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
         self.law.tune(dt);
         let command = self.law.update(measurement, reference, dt);
         let limit = self.law.limit();
-        let good = input & command.finite() & self.law.finite() & limit.is_finite();
-        self.flag = T::zero();
-        let granted = clamp(&command, limit);
-        if good.all() {
-            self.last = granted;
+        // Numbers whose magnitudes together are within the limit are finite, and within it one by one.
+        let within = command.magnitude().le(limit) & limit.is_finite();
+        if (input & within & self.law.finite()).all() {
+            self.last = command;
+            self.flag = T::zero();
         } else {
-            self.last = blend(good, &granted, &bounded(&self.last, limit));
-            self.mend(good, input, before, measurement);
+            self.settle(&command, limit, input, before, measurement);
         }
         self.last
     }
 
-    /// Takes the state from before a bad input, and resets what of it is not finite.
+    /// Grants what is good of the command, within the limit, and mends the rest.
     #[cold]
     #[inline(never)]
-    fn mend(
+    fn settle(
         &mut self,
-        good: T::Mask,
+        command: &L::Command,
+        limit: T,
         input: T::Mask,
         before: Option<L>,
         measurement: &Measurement<T>,
     ) {
+        let good = input & command.finite() & self.law.finite() & limit.is_finite();
+        self.last = blend(good, &clamp(command, limit), &bounded(&self.last, limit));
         self.flag = T::select(good, T::zero(), T::one());
+        if !good.all() {
+            self.mend(input, before, measurement);
+        }
+    }
+
+    /// Takes the state from before a bad input, and resets what of it is not finite.
+    fn mend(&mut self, input: T::Mask, before: Option<L>, measurement: &Measurement<T>) {
         if let Some(before) = before {
             self.law = blend(input, &self.law, &before);
         }

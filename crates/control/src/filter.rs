@@ -11,6 +11,26 @@ use crate::real::{Mask, Real};
 use crate::record;
 
 record! {
+    /// The time between two ticks and its reciprocal.
+    pub struct Clock {
+        /// Time between two ticks; zero before the first.
+        step: T [s];
+        /// Its reciprocal.
+        per_step: T [1/s];
+    }
+}
+
+impl<T: Real> Clock<T> {
+    /// Takes the time between two ticks; divides only where it changes.
+    #[inline(always)]
+    pub fn tune(&mut self, dt: T) {
+        if !self.step.eq(dt).all() {
+            *self = Self { step: dt, per_step: T::one() / dt };
+        }
+    }
+}
+
+record! {
     /// Second-order Butterworth low-pass on a body vector.
     pub struct Butterworth {
         /// Sample time for which the coefficients hold; zero before the first.

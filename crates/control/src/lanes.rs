@@ -240,6 +240,10 @@ impl<T: Real<Mask = bool, Scalar = T>, const N: usize> Real for Lanes<T, N> {
     fn power_of_two(self) -> Self {
         self.each(T::power_of_two)
     }
+    #[inline(always)]
+    fn inverse_cbrt_guess(self) -> Self {
+        self.each(T::inverse_cbrt_guess)
+    }
 
     // The elementary functions are long: as a loop over the lanes, the compiler's loop vectoriser
     // takes them whole, where it would lose its way in eight copies of the body.
@@ -262,6 +266,10 @@ impl<T: Real<Mask = bool, Scalar = T>, const N: usize> Real for Lanes<T, N> {
     #[inline(always)]
     fn cbrt(self) -> Self {
         self.each(T::cbrt)
+    }
+    #[inline(always)]
+    fn two_thirds_power(self) -> Self {
+        self.each(T::two_thirds_power)
     }
     #[inline(always)]
     fn atan2(mut self, x: Self) -> Self {

@@ -9,7 +9,7 @@ use core::fmt;
 use core::marker::PhantomData;
 
 use crate::lanes::Lanes;
-use crate::real::Real;
+use crate::real::{Mask as _, Real};
 
 /// What a declaration says of one number.
 #[derive(Clone, Copy, Debug)]
@@ -120,14 +120,34 @@ pub trait Record<T: Real>: Copy {
     /// Whether every number that may change in flight is finite, lane by lane.
     #[inline(always)]
     fn finite(&self) -> T::Mask {
-        let mut sum = T::zero();
+        // A finite sum has finite terms. Terms so large that their sum is not are looked at again.
+        let quick = self.sum(|x| x).is_finite();
+        if quick.all() { quick } else { self.finite_each() }
+    }
+
+    /// [`Record::finite`], number by number.
+    #[cold]
+    #[inline(never)]
+    fn finite_each(&self) -> T::Mask {
+        self.sum(|x| x * T::Scalar::zero()).eq(T::zero())
+    }
+
+    /// Sum of the magnitudes of every number that may change in flight; not finite where one is not.
+    #[inline(always)]
+    fn magnitude(&self) -> T {
+        self.sum(Real::abs)
+    }
+
+    /// Sum of `f` of every number that may change in flight, lane by lane.
+    #[inline(always)]
+    fn sum(&self, f: impl Fn(T::Scalar) -> T::Scalar) -> T {
+        let mut sums = T::zero();
         for i in 0..T::LANES {
-            // Zero times a number is zero; zero times an infinity or NaN is NaN, and the sum stays it.
-            let mut rest = T::Scalar::zero();
-            self.pick_lane(i).each_variable(&mut |x| rest += x * T::Scalar::zero());
-            sum.set_lane(i, rest);
+            let mut sum = T::Scalar::zero();
+            self.pick_lane(i).each_variable(&mut |x| sum += f(x));
+            sums.set_lane(i, sum);
         }
-        sum.eq(T::zero())
+        sums
     }
 }
 

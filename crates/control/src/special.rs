@@ -243,7 +243,7 @@ pub fn atan2<T: Real>(y: T, x: T) -> T {
 /// as the lower end.
 #[inline(always)]
 pub fn exp<T: Real>(x: T) -> T {
-    let [lowest, highest] = T::Precision::EXP_RANGE.map(T::lit);
+    let [lowest, highest] = crate::record::each(T::Precision::EXP_RANGE, T::lit);
     let x = x.clamp(lowest, highest);
     let n = (x * T::lit(LOG2_E)).round();
     let [p, q] = crate::record::each(T::Precision::LN_2, |part| n * T::lit(part));
@@ -282,19 +282,39 @@ pub fn cbrt<T: Real>(x: T) -> T {
     let rest = e - third * T::lit(3.0);
     let a = m * rest.power_of_two();
 
-    // y = a^(-1/3): a guess, improved once by (1 - h)^(-1/3) = 1 + h/3 + 2 h^2/9 + 14 h^3/81.
-    // The guess is one for the mantissa times one for the rest of the exponent.
-    let correction =
-        |h: T| h * (T::lit(1.0 / 3.0) + h * (T::lit(2.0 / 9.0) + h * T::lit(14.0 / 81.0)));
+    // y = a^(-1/3): a guess, improved once. The guess is one for the mantissa times one for the rest
+    // of the exponent.
     let guess = polynomial(m, CBRT_GUESS) * polynomial(rest, CBRT_STEP);
-    let y = guess + guess * correction(T::one() - a * (guess * guess * guess));
+    let y = guess + guess * cube_root_correction(T::one() - a * (guess * guess * guess));
     // a y^2, rounded so short that its cube is exact; the same series then adds what is missing.
     let short = if is_single::<T>() { 1.0 / 128.0 } else { 1.0 / 65536.0 };
     let big = T::lit(T::Precision::ROUND * short);
     let root = (a * (y * y) + big) - big;
-    let root = root + root * correction((a - root * root * root) * (y * y * y));
+    let root = root + root * cube_root_correction((a - root * root * root) * (y * y * y));
 
     let power = third - T::select(subnormal, T::lit(20.0), T::zero());
     let root = (root * power.power_of_two()).with_sign(x);
     T::select(x.eq(T::zero()), x, root)
+}
+
+/// `|x|^(2/3)` with the sign of `x`.
+///
+/// Error at most 2 ulp for normal numbers; for smaller ones, and for NaN, the result is zero. An
+/// infinity counts as the largest finite number. Exactly odd, but a zero comes out positive.
+#[inline(always)]
+pub fn two_thirds_power<T: Real>(x: T) -> T {
+    let a = x.abs().min(largest());
+    // y = a^(-1/3), improved twice by (1 - h)^(-1/3): 4 % become 2e-5 and then less than rounding.
+    let mut y = a.inverse_cbrt_guess();
+    for _ in 0..2 {
+        y += y * cube_root_correction(T::one() - (a * y) * (y * y));
+    }
+    let power = T::select(T::lit(T::Precision::TINY).le(x.abs()), a * y, T::zero());
+    power.with_sign(x)
+}
+
+/// `(1 - h)^(-1/3) - 1` for small `h`, to its third order.
+#[inline(always)]
+fn cube_root_correction<T: Real>(h: T) -> T {
+    h * (T::lit(1.0 / 3.0) + h * (T::lit(2.0 / 9.0) + h * T::lit(14.0 / 81.0)))
 }

@@ -51,6 +51,18 @@ fn vector(w: &Wrench<f64>) -> Vector4<f64> {
     Vector4::new(w.thrust, w.torque.x, w.torque.y, w.torque.z)
 }
 
+/// Thrusts and the wrench that they make; what is refused must be the rest.
+fn allocate(allocation: &Allocation<f64>, asked: &Wrench<f64>) -> ([f64; 4], Wrench<f64>) {
+    let allocated = allocation.allocate(asked);
+    let granted = allocation.wrench(allocated.thrusts);
+    let rest = vector(asked) - vector(&granted) - vector(&allocated.refused);
+    assert!(rest.amax() < 5e-14 * (1.0 + vector(asked).amax()), "{rest:?}");
+    if allocated.saturation == 0.0 {
+        assert_eq!(vector(&allocated.refused), Vector4::zeros());
+    }
+    (allocated.thrusts, granted)
+}
+
 /// Wrenches from far below to far above what the rotors can do.
 fn any_wrench(random: &mut Random) -> Wrench<f64> {
     let reach = 10f64.powi((random.bits() % 3) as i32 - 1);
@@ -65,7 +77,7 @@ fn what_the_rotors_can_make_is_inverted_exactly() {
     for _ in 0..100_000 {
         let u = Vector4::from_fn(|_, _| random.between(LOW, HIGH));
         let asked = wrench(effect() * u);
-        let (thrusts, granted) = allocation.allocate(&asked);
+        let (thrusts, granted) = allocate(&allocation, &asked);
         assert!((Vector4::from(thrusts) - u).amax() < 2e-14, "{u:?}");
         assert!((vector(&granted) - vector(&asked)).amax() < 5e-14, "{u:?}");
     }
@@ -75,7 +87,7 @@ fn what_the_rotors_can_make_is_inverted_exactly() {
 fn no_wrench_asks_a_rotor_beyond_its_limits() {
     let (allocation, mut random) = (allocation(), Random(2));
     for _ in 0..100_000 {
-        let (thrusts, _) = allocation.allocate(&any_wrench(&mut random));
+        let (thrusts, _) = allocate(&allocation, &any_wrench(&mut random));
         assert!(thrusts.iter().all(|u| (LOW..=HIGH).contains(u)), "{thrusts:?}");
     }
 }
@@ -84,7 +96,7 @@ fn no_wrench_asks_a_rotor_beyond_its_limits() {
 fn the_reported_wrench_is_what_the_thrusts_make() {
     let (allocation, mut random) = (allocation(), Random(3));
     for _ in 0..100_000 {
-        let (thrusts, granted) = allocation.allocate(&any_wrench(&mut random));
+        let (thrusts, granted) = allocate(&allocation, &any_wrench(&mut random));
         let made = effect() * Vector4::from(thrusts);
         assert!((vector(&granted) - made).amax() < 1e-14, "{thrusts:?}");
     }
@@ -96,7 +108,7 @@ fn roll_and_pitch_are_granted_whenever_the_rotors_can() {
     for _ in 0..100_000 {
         let asked = any_wrench(&mut random);
         let (roll, pitch) = (asked.torque.x / ARM, asked.torque.y / ARM);
-        let (_, granted) = allocation.allocate(&asked);
+        let (_, granted) = allocate(&allocation, &asked);
         if roll.abs() <= ROOM && pitch.abs() <= ROOM {
             reachable += 1;
             assert!((granted.torque.x - asked.torque.x).abs() < 1e-14, "{asked:?}");
@@ -143,7 +155,7 @@ fn thrust_is_granted_before_yaw_as_far_as_roll_and_pitch_leave_it() {
         } else {
             asked.thrust
         };
-        let (_, granted) = allocation.allocate(&asked);
+        let (_, granted) = allocate(&allocation, &asked);
         assert!((granted.thrust - want).abs() < 1e-13, "{asked:?}: {granted:?}, not {want}");
     }
 }
@@ -153,7 +165,7 @@ fn yaw_is_granted_as_far_as_a_rotor_has_room_and_never_reversed() {
     let (allocation, mut random, mut cut) = (allocation(), Random(6), 0);
     for _ in 0..100_000 {
         let asked = any_wrench(&mut random);
-        let (thrusts, granted) = allocation.allocate(&asked);
+        let (thrusts, granted) = allocate(&allocation, &asked);
         let share = granted.torque.z / asked.torque.z;
         let room = 1e-15 / asked.torque.z.abs();
         assert!((-room..=1.0 + room).contains(&share), "{asked:?}: {share}");
@@ -174,7 +186,7 @@ fn yaw_is_granted_as_far_as_a_rotor_has_room_and_never_reversed() {
 fn too_much_yaw_takes_nothing_from_the_rest() {
     let allocation = allocation();
     let asked = Wrench { thrust: 6.125, torque: Vec3::new(0.05, -0.08, 5.0) };
-    let (thrusts, granted) = allocation.allocate(&asked);
+    let (thrusts, granted) = allocate(&allocation, &asked);
     assert!((granted.thrust - 6.125).abs() < 1e-14);
     assert!((granted.torque.x - 0.05).abs() < 1e-15 && (granted.torque.y + 0.08).abs() < 1e-15);
     // Rotors 1 and 3 (counter-clockwise) go down for positive yaw until the lower of them, which

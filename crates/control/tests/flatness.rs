@@ -41,7 +41,7 @@ fn thrust(t: f64) -> Thrust<f64> {
 
 fn along(t: f64) -> Attitude {
     let thrust = thrust(t);
-    attitude_along(thrust.force, thrust.yaw, None)
+    attitude_along(thrust.force, thrust.yaw)
 }
 
 /// First derivative from eight neighbours, error of order h^8.
@@ -76,7 +76,7 @@ fn the_thrust_axis_is_along_the_force_and_the_lateral_axis_normal_to_the_heading
     for _ in 0..1000 {
         let mut number = || random.between(-9.0, 9.0);
         let (force, yaw) = (Vec3::new(number(), number(), number()), number());
-        let r = attitude_along(force, yaw, None);
+        let r = attitude_along(force, yaw);
         assert!((r.z_axis() - force * (1.0 / force.norm())).norm() < 1e-14);
         // Z-Y-X: the forward axis has no part along y_c = (-sin psi, cos psi, 0).
         let y_c = Vec3::new(-yaw.sin(), yaw.cos(), 0.0);

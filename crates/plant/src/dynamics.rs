@@ -7,12 +7,12 @@
 //!
 //! a_T is the rotors' thrust per mass. The quaternion replaces the article's Euler angles, which are
 //! singular at 90 deg of pitch; the force disturbance enters divided by the mass, which the article
-//! forgets. Classical Runge-Kutta of order 4; the quaternion is normalised after every step.
+//! forgets. Classical Runge-Kutta of order 4; the quaternion is normalised after every step. The rotors
+//! follow their commands whatever the body does, so their speeds at the three stages are exact.
 
 use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
-use stormpetrel_control::record::RecordExt as _;
 
 use crate::actuation::Actuate;
 use crate::state::{Derivative, State};
@@ -39,6 +39,23 @@ pub fn acceleration<T: Real>(
 }
 
 record! {
+    /// One over mass and inertia: divisions are slow, and these are the same at every tick.
+    pub struct Reciprocals {
+        /// Of the mass.
+        mass: T [1/kg];
+        /// Of the moments of inertia.
+        inertia: Vec3<T, Body> [1/(kg m^2)];
+    }
+}
+
+impl<T: Real> Reciprocals<T> {
+    /// Of this vehicle.
+    pub fn new(vehicle: &Vehicle<T>) -> Self {
+        Self { mass: T::one() / vehicle.mass, inertia: vehicle.inertia.map(|i| T::one() / i) }
+    }
+}
+
+record! {
     /// What stays constant over a control tick, prepared once.
     pub struct Held {
         /// Disturbance force per mass.
@@ -53,19 +70,8 @@ record! {
 impl<T: Real> Held<T> {
     /// For this vehicle and push.
     #[inline(always)]
-    pub fn new(vehicle: &Vehicle<T>, push: &Push<T>) -> Self {
-        let mut held = Self::default();
-        for i in 0..T::LANES {
-            let (vehicle, push) = (vehicle.pick(i), push.pick(i));
-            let one = T::Scalar::one();
-            Held {
-                push_per_mass: push.force * (one / vehicle.mass),
-                torque: push.torque,
-                per_inertia: vehicle.inertia.map(|inertia| one / inertia),
-            }
-            .put(&mut held, i);
-        }
-        held
+    pub fn new(per: &Reciprocals<T>, push: &Push<T>) -> Self {
+        Held { push_per_mass: push.force * per.mass, torque: push.torque, per_inertia: per.inertia }
     }
 }
 
@@ -96,11 +102,10 @@ pub fn derivative<T: Real>(
             q.w * half.z + q.x * half.y - q.y * half.x,
         ], // (3)
         rate: (torque - gyroscopic).scale(held.per_inertia), // (4)
-        rotor_speed: actuation.rotor_acceleration(state, vehicle),
     }
 }
 
-/// One Runge-Kutta step of `h` seconds.
+/// One Runge-Kutta step of `h` seconds; `actuation` has let them pass.
 #[inline(always)]
 pub fn runge_kutta<T: Real>(
     state: &State<T>,
@@ -109,14 +114,15 @@ pub fn runge_kutta<T: Real>(
     actuation: &impl Actuate<T>,
     held: &Held<T>,
 ) -> State<T> {
+    let [half_way, end] = actuation.rotor_speeds(state);
     let slope = |at: &State<T>| derivative(at, vehicle, actuation, held);
     let k1 = slope(state);
-    let k2 = slope(&state.along(&k1, h.half()));
-    let k3 = slope(&state.along(&k2, h.half()));
-    let k4 = slope(&state.along(&k3, h));
+    let k2 = slope(&state.along(&k1, h.half(), half_way));
+    let k3 = slope(&state.along(&k2, h.half(), half_way));
+    let k4 = slope(&state.along(&k3, h, end));
     let two = T::lit(2.0);
     let mean = record::Record::zip([&k1, &k2, &k3, &k4], &mut |[a, b, c, d]| a + (b + c) * two + d);
-    let mut next = state.along(&mean, h * T::lit(1.0 / 6.0));
+    let mut next = state.along(&mean, h * T::lit(1.0 / 6.0), end);
     next.attitude = next.attitude.normalised();
     next
 }

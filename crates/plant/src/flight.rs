@@ -8,8 +8,8 @@ use stormpetrel_control::signals::{Applied, Measurement, Model, Trajectory, Wren
 use stormpetrel_control::stack::{Command, Stack};
 
 use crate::actuation::{Actuate, Actuation};
-use crate::disturbance::{Disturbance, MOST};
-use crate::dynamics::{Held, Push, acceleration};
+use crate::disturbance::{Disturb as _, Disturbance, MOST};
+use crate::dynamics::{Held, Push, Reciprocals, acceleration};
 use crate::reference::{Refer, Reference};
 use crate::state::State;
 use crate::vehicle::Vehicle;
@@ -131,6 +131,12 @@ record! {
         control_step: T [s];
         /// State of the vehicle.
         state: State<T> [];
+        /// One over mass and inertia of the vehicle.
+        per: Reciprocals<T> [];
+        /// True mass over the mass that the laws believe.
+        mass_ratio: T [1];
+        /// The rotors' thrust per mass at the start of the tick.
+        thrust_per_mass: Vec3<T, World> [m/s^2];
         /// What the allocation refused at the last tick.
         unallocated: Wrench<T> [];
         /// 1 while flying, 0 once failed.
@@ -152,18 +158,19 @@ impl<T: Real> Flight<T> {
     /// Puts the vehicle at `state` and lets every law begin there.
     pub fn start(&mut self, state: State<T>) {
         self.state = state;
+        self.per = Reciprocals::new(&self.vehicle);
+        self.mass_ratio = self.vehicle.mass / self.model.mass;
         self.actuation.reset();
         self.unallocated = Wrench::default();
         (self.alive, self.cause, self.flown) = (T::one(), T::zero(), T::zero());
         self.tick = 0;
-        self.stack.reset(&self.measure());
+        self.stack.reset(&self.measure(self.actuation.wrench(&state)));
     }
 
     /// What the laws see: the true state, and the rotors as their model has them.
     #[inline(always)]
-    fn measure(&self) -> Measurement<T> {
+    fn measure(&self, achieved: Wrench<T>) -> Measurement<T> {
         let State { position, velocity, attitude, rate, .. } = self.state;
-        let achieved = self.actuation.wrench(&self.state);
         Measurement { position, velocity, attitude, rate, achieved, unallocated: self.unallocated }
     }
 
@@ -181,12 +188,16 @@ impl<T: Real> Flight<T> {
         let mut push = Push::default();
         for source in &self.disturbance {
             if !matches!(source, Disturbance::Calm(_)) {
-                source.add(&mut push, time, &self.vehicle);
+                let one = source.at(time, &self.vehicle);
+                push.force += one.force;
+                push.torque += one.torque;
             }
         }
         let estimate = self.stack.estimate() * self.model.mass;
-        let command = self.stack.update(&self.measure(), &reference, dt);
+        let measurement = self.measure(self.actuation.wrench(&self.state));
+        let command = self.stack.update(&measurement, &reference, dt);
         self.unallocated = self.actuation.command(&command, &self.vehicle);
+        self.thrust_per_mass = self.actuation.thrust_per_mass(&self.state, &self.vehicle);
         let State { position, velocity, attitude, rate, rotor_speed } = self.state;
         Tick {
             time,
@@ -212,13 +223,11 @@ impl<T: Real> Flight<T> {
     /// m_law (a + g_law e_z) - T_law R e_z from the true acceleration, N.
     #[inline(always)]
     fn lumped(&self, push: &Push<T>) -> Vec3<T, World> {
-        let thrust = self.actuation.thrust_per_mass(&self.state, &self.vehicle);
         let mut lumped = Vec3::zero();
         for i in 0..T::LANES {
-            let (thrust, push) = (thrust.pick(i), push.pick(i));
+            let (thrust, per_mass) = (self.thrust_per_mass.pick(i), self.per.mass.lane(i));
             let (vehicle, model) = (self.vehicle.pick(i), self.model.pick(i));
-            let per_mass = push.force * (T::Scalar::one() / vehicle.mass);
-            let a = acceleration(thrust, per_mass, vehicle.gravity);
+            let a = acceleration(thrust, push.force.pick(i) * per_mass, vehicle.gravity);
             let lump = (a + Vec3::up(model.gravity)) * model.mass - thrust * vehicle.mass;
             lump.put(&mut lumped, i);
         }
@@ -228,14 +237,11 @@ impl<T: Real> Flight<T> {
     /// What drove the vehicle, as an observer may know it: the law's own mass and gravity.
     #[inline(always)]
     fn applied(&self, command: &Command<T>) -> Applied<T> {
-        let thrust = self.actuation.thrust_per_mass(&self.state, &self.vehicle);
         let mut applied = Applied::default();
         for i in 0..T::LANES {
-            let (force, thrust) = (command.thrust.force.pick(i), thrust.pick(i));
-            let (vehicle, model) = (self.vehicle.pick(i), self.model.pick(i));
-            let weight = Vec3::up(model.gravity);
-            let (commanded, measured) =
-                (force - weight, thrust * (vehicle.mass / model.mass) - weight);
+            let (force, thrust) = (command.thrust.force.pick(i), self.thrust_per_mass.pick(i));
+            let weight = Vec3::up(self.model.gravity.lane(i));
+            let (commanded, measured) = (force - weight, thrust * self.mass_ratio.lane(i) - weight);
             Applied { commanded, measured }.put(&mut applied, i);
         }
         applied
@@ -250,7 +256,7 @@ impl<T: Real> Flight<T> {
         self.stack.advance(&applied, dt);
 
         let push = Push { force: tick.disturbance.force, torque: tick.disturbance.torque };
-        let held = Held::new(&self.vehicle, &push);
+        let held = Held::new(&self.per, &push);
         let h = dt * T::lit(1.0 / f64::from(self.substeps));
         let mut state = self.state;
         for _ in 0..self.substeps {
@@ -271,9 +277,9 @@ impl<T: Real> Flight<T> {
         let mut error = T::zero();
         for i in 0..T::LANES {
             let e = tick.position.pick(i) - tick.reference.position.pick(i);
-            error.set_lane(i, e.norm());
+            error.set_lane(i, e.norm_squared());
         }
-        self.fail(position_error.lt(error), 1.0);
+        self.fail(position_error.sq().lt(error), 1.0);
         // Only where a tilt limit is set; 180 deg allows any attitude.
         if !T::lit(180.0).le(tilt_deg).all() {
             let (_, lowest) = (tilt_deg * T::lit(core::f64::consts::PI / 180.0)).sin_cos();

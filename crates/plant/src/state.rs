@@ -21,7 +21,7 @@ record! {
 }
 
 record! {
-    /// Time derivative of the state.
+    /// Time derivative of the body's state; rotor speeds are known in closed form.
     pub struct Derivative {
         /// Velocity.
         position: Vec3<T, World> [m/s];
@@ -31,15 +31,14 @@ record! {
         attitude: [T; 4] [1/s];
         /// Angular acceleration.
         rate: Vec3<T, Body> [rad/s^2];
-        /// Acceleration of each rotor.
-        rotor_speed: [T; 4] [rad/s^2];
     }
 }
 
 impl<T: Real> State<T> {
-    /// The state `h` seconds on along a constant derivative; the quaternion is not normalised.
+    /// The state `h` seconds on along a constant derivative, with these rotor speeds; the quaternion is
+    /// not normalised.
     #[inline(always)]
-    pub fn along(&self, d: &Derivative<T>, h: T) -> Self {
+    pub fn along(&self, d: &Derivative<T>, h: T, rotor_speed: [T; 4]) -> Self {
         let q = self.attitude;
         let [w, x, y, z] = d.attitude;
         Self {
@@ -47,9 +46,7 @@ impl<T: Real> State<T> {
             velocity: self.velocity + d.velocity * h,
             attitude: Rotation::from_quaternion(q.w + w * h, q.x + x * h, q.y + y * h, q.z + z * h),
             rate: self.rate + d.rate * h,
-            rotor_speed: stormpetrel_control::record::from_index(|i| {
-                self.rotor_speed[i] + d.rotor_speed[i] * h
-            }),
+            rotor_speed,
         }
     }
 }

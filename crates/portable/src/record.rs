@@ -3,39 +3,24 @@
 use stormpetrel_control::math::Vec3;
 use stormpetrel_control::record::RecordExt as _;
 use stormpetrel_control::signals::{Applied, Measurement, Wrench};
-use stormpetrel_lab::scenario::{Scenario, load_text};
-use stormpetrel_lab::shipped::SHIPPED;
+use stormpetrel_lab::scenario::Scenario;
 use stormpetrel_plant::actuation::Actuate as _;
 use stormpetrel_plant::flight::{Flight, Tick};
 
 use crate::bytes::{Number, put};
+use crate::recipe::Recipe;
 use crate::replay::{Input, Recorder};
-
-/// The flights to record: name, shipped scenario, and what is changed in it.
-pub const RECORDED: [(&str, &str, &[&str]); 3] = [
-    // PID, HOSM on measured thrust, commanded rates, tilt priority, INDI with its filter, rotors.
-    ("full", "first-flight", &["disturbance.0.torque=0.02"]),
-    // arctan Euler reference, Euler error, INDI without filter, doubled HOSM on commanded thrust.
-    ("article", "article/literal", &[]),
-    ("rate-pid", "first-flight", &["rate={ law = \"pid\" }"]),
-];
 
 /// Ticks of each recording.
 pub const TICKS: u32 = 2000;
 
-/// The recording of the flight with this name in [`RECORDED`], in double and in single precision.
+/// The recording of a flight, in double and in single precision.
 ///
 /// # Errors
-/// Where there is no such flight, or the stack answers the recorder otherwise than in flight.
-pub fn recording(name: &str) -> Result<Vec<u8>, String> {
-    let unknown = || format!("no recording is called {name}");
-    let (_, file, sets) = RECORDED.iter().find(|(known, ..)| *known == name).ok_or_else(unknown)?;
-    let (_, text) = SHIPPED.iter().find(|(known, _)| known == file).ok_or_else(unknown)?;
-    let sets: Vec<String> = sets.iter().map(|&set| set.to_owned()).collect();
-    let file = load_text(name, file, (*text).to_owned(), &sets)
-        .map_err(|faults| format!("{name}: {faults:?}"))?;
-    let mut scenario = file.scenarios.into_iter().next().ok_or_else(unknown)?;
-    let inputs = inputs(&scenario)?;
+/// Where the flight cannot be read, or the stack answers the recorder otherwise than in flight.
+pub fn recording(recipe: &Recipe) -> Result<Vec<u8>, String> {
+    let mut scenario = recipe.scenario()?;
+    let inputs = inputs(&scenario).map_err(|error| format!("{}: {error}", recipe.name))?;
     let mut bytes = Vec::new();
     write::<f64>(&mut scenario, &inputs, &mut bytes);
     write::<f32>(&mut scenario, &inputs, &mut bytes);

@@ -89,7 +89,12 @@ impl<T: Real> Controller<T> for EulerAngles<T> {
     type Command = Attitude<T>;
 
     #[inline(always)]
-    fn update(&mut self, measurement: &Measurement<T>, thrust: &Thrust<T>, dt: T) -> Attitude<T> {
+    fn tune(&mut self, dt: T) {
+        self.memory.tune(dt);
+    }
+
+    #[inline(always)]
+    fn update(&mut self, measurement: &Measurement<T>, thrust: &Thrust<T>, _: T) -> Attitude<T> {
         let mut attitude = Attitude::<T>::default();
         for i in 0..T::LANES {
             let thrust = thrust.pick(i);
@@ -98,7 +103,7 @@ impl<T: Real> Controller<T> for EulerAngles<T> {
             attitude.thrust.set_lane(i, thrust);
         }
         let rotation = &attitude.rotation;
-        let (rate, acceleration) = self.memory.update(self.options.rates, rotation, thrust, dt);
+        let (rate, acceleration) = self.memory.update(self.options.rates, rotation, thrust);
         Attitude { rate, acceleration, ..attitude }
     }
 

@@ -4,7 +4,8 @@ mod rates;
 
 use crate::math::Body;
 use crate::math::{Rotation, Vec3, World};
-use crate::real::Real;
+use crate::real::{Mask, Real};
+use crate::record;
 use crate::signals::{Measurement, Model, Thrust};
 use crate::{dispatch_controller, registry};
 
@@ -29,29 +30,54 @@ fn projected_thrust<T: Real>(
     model.mass * thrust.force.dot(measurement.attitude.z_axis())
 }
 
-/// Attitude with thrust axis along `force` and heading `yaw`, Z-Y-X convention: `b_x` is normal to the
-/// world's lateral heading axis `y_c` = (-sin yaw, cos yaw, 0). `last` is the `b_x` to keep near the
-/// singular direction `b_z || y_c` and the side to stay on when passing through it; without it the
-/// heading side is taken.
+/// Sine and cosine of the heading. Vehicles mostly hold yaw 0, for which nothing need be computed.
 #[inline(always)]
-pub fn attitude_along<T: Real>(
-    force: Vec3<T, World>,
-    yaw: T,
-    last: Option<Vec3<T, World>>,
-) -> Rotation<T, Body, World> {
+fn heading<T: Real>(yaw: T) -> Heading<T> {
+    let (sin, cos) = if yaw.eq(T::zero()).all() {
+        (T::zero(), T::one())
+    } else {
+        // Adding zero makes a negative zero positive, as above.
+        (yaw + T::zero()).sin_cos()
+    };
+    Heading { sin, cos }
+}
+
+record! {
+    /// Sine and cosine of the yaw angle.
+    struct Heading {
+        /// Sine.
+        sin: T [1];
+        /// Cosine.
+        cos: T [1];
+    }
+}
+
+/// Attitude with thrust axis along `force` and heading `yaw`, Z-Y-X convention: `b_x` is normal to the
+/// world's lateral heading axis `y_c` = (-sin yaw, cos yaw, 0).
+pub fn attitude_along<T: Real>(force: Vec3<T, World>, yaw: T) -> Rotation<T, Body, World> {
     let (sin, cos) = yaw.sin_cos();
-    let y_c = Vec3::new(-sin, cos, T::zero());
-    let heading = Vec3::new(cos, sin, T::zero());
+    attitude_beside(force, &Heading { sin, cos }, Vec3::new(cos, sin, T::zero()))
+}
+
+/// [`attitude_along`] beside the previous `b_x`: near the singular direction `b_z || y_c` that is kept,
+/// and passing through it, its side.
+#[inline(always)]
+fn attitude_beside<T: Real>(
+    force: Vec3<T, World>,
+    heading: &Heading<T>,
+    last: Vec3<T, World>,
+) -> Rotation<T, Body, World> {
+    let y_c = Vec3::new(-heading.sin, heading.cos, T::zero());
     let none = force.norm_squared().lt(T::lit(1e-12));
     let force = Vec3::select(none, Vec3::up(T::one()), force);
     let length_squared = force.norm_squared();
-    // From the force itself and not from b_z: the two roots below need not wait for each other.
     let side = y_c.cross(force);
-    let last = last.unwrap_or(heading);
     // Closer than 0.06 deg to the singular direction the last axis is held, made normal to b_z.
     let singular = side.norm_squared().lt(T::lit(1e-6) * length_squared);
     let held = last * length_squared - force * last.dot(force);
     let side = Vec3::select(singular, held, side * T::one().with_sign(side.dot(last)));
-    let (b_x, b_z) = (side.unit(), force.unit());
-    Rotation::from_axes(b_x, b_z.cross(b_x), b_z)
+    // b_x = side/|side| and b_z = force/|force|: all three axes times |side| |force| instead, so that
+    // the only division is the one that makes the quaternion a unit.
+    let (width, length) = (side.norm(), length_squared.sqrt());
+    Rotation::from_scaled_axes(side * length, force.cross(side), force * width, width * length)
 }

@@ -12,6 +12,7 @@
 //!
 //! Source: differentiating F and b_x = y_c x b_z; compare Faessler, Franchi and Scaramuzza, RA-L 2018.
 
+use crate::filter::Clock;
 use crate::math::{Body, Rotation, Vec3, World};
 use crate::real::Real;
 use crate::record::RecordExt as _;
@@ -37,10 +38,18 @@ record! {
         previous: Rotation<T, Body, World> [1];
         /// 1 once there is a previous reference.
         started: T [1];
+        /// Time between two references.
+        clock: Clock<T> [];
     }
 }
 
 impl<T: Real> RateMemory<T> {
+    /// Takes the time between two references.
+    #[inline(always)]
+    pub fn tune(&mut self, dt: T) {
+        self.clock.tune(dt);
+    }
+
     /// Angular velocity and acceleration of the reference in its own axes.
     #[inline(always)]
     pub fn update(
@@ -48,7 +57,6 @@ impl<T: Real> RateMemory<T> {
         source: Rates,
         rotation: &Rotation<T, Body, World>,
         thrust: &Thrust<T>,
-        dt: T,
     ) -> (Vec3<T, Body>, Vec3<T, Body>) {
         let (mut rate, mut acceleration) = (Vec3::zero(), Vec3::zero());
         match source {
@@ -62,7 +70,7 @@ impl<T: Real> RateMemory<T> {
             }
             Rates::Commanded => {
                 for i in 0..T::LANES {
-                    let omega = self.pick(i).difference(rotation.pick(i), dt.lane(i));
+                    let omega = self.pick(i).difference(rotation.pick(i));
                     omega.put(&mut rate, i);
                 }
             }
@@ -74,9 +82,9 @@ impl<T: Real> RateMemory<T> {
 
     /// Backward difference of the attitude, in its own axes.
     #[inline(always)]
-    fn difference(&self, rotation: Rotation<T, Body, World>, dt: T) -> Vec3<T, Body> {
+    fn difference(&self, rotation: Rotation<T, Body, World>) -> Vec3<T, Body> {
         let step = self.previous.inverse() * rotation;
-        step.vector() * (T::lit(2.0) * step.w * self.started / dt) // (6)
+        step.vector() * (T::lit(2.0) * step.w * self.started * self.clock.per_step) // (6)
     }
 }
 

@@ -11,7 +11,7 @@
 //! Source: Z-Y-X heading as in Faessler, Franchi and Scaramuzza, RA-L 2018; thrust projection after
 //! Lee, Leok and McClamroch, CDC 2010.
 
-use super::{RateMemory, Rates, attitude_along, projected_thrust};
+use super::{Heading, RateMemory, Rates, attitude_beside, heading, projected_thrust};
 use crate::controller::Controller;
 use crate::math::{Body, Rotation, Vec3, World};
 use crate::real::Real;
@@ -60,11 +60,10 @@ impl<T: Real> RotationMatrix<T> {
     }
 
     #[inline(always)]
-    fn rotation(&mut self, thrust: &Thrust<T>) -> Rotation<T, Body, World> {
-        let (sin, cos) = thrust.yaw.sin_cos();
-        let heading = Vec3::new(cos, sin, T::zero());
-        let last = Vec3::select(T::zero().lt(self.memory.started), self.forward, heading);
-        let rotation = attitude_along(thrust.force, thrust.yaw, Some(last)); // (1-3)
+    fn rotation(&mut self, force: Vec3<T, World>, heading: &Heading<T>) -> Rotation<T, Body, World> {
+        let ahead = Vec3::new(heading.cos, heading.sin, T::zero());
+        let last = Vec3::select(T::zero().lt(self.memory.started), self.forward, ahead);
+        let rotation = attitude_beside(force, heading, last); // (1-3)
         self.forward = rotation.x_axis();
         rotation
     }
@@ -75,17 +74,23 @@ impl<T: Real> Controller<T> for RotationMatrix<T> {
     type Command = Attitude<T>;
 
     #[inline(always)]
-    fn update(&mut self, measurement: &Measurement<T>, thrust: &Thrust<T>, dt: T) -> Attitude<T> {
+    fn tune(&mut self, dt: T) {
+        self.memory.tune(dt);
+    }
+
+    #[inline(always)]
+    fn update(&mut self, measurement: &Measurement<T>, thrust: &Thrust<T>, _: T) -> Attitude<T> {
+        let heading = heading(thrust.yaw);
         let mut attitude = Attitude::<T>::default();
         for i in 0..T::LANES {
             let (mut law, thrust) = (self.pick(i), thrust.pick(i));
-            law.rotation(&thrust).put(&mut attitude.rotation, i);
+            law.rotation(thrust.force, &heading.pick(i)).put(&mut attitude.rotation, i);
             law.forward.put(&mut self.forward, i);
             let thrust = projected_thrust(&thrust, &measurement.pick(i), &law.model); // (4)
             attitude.thrust.set_lane(i, thrust);
         }
         let rotation = &attitude.rotation;
-        let (rate, acceleration) = self.memory.update(self.options.rates, rotation, thrust, dt);
+        let (rate, acceleration) = self.memory.update(self.options.rates, rotation, thrust);
         Attitude { rate, acceleration, ..attitude }
     }
 

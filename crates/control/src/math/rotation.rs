@@ -125,7 +125,11 @@ impl<T: Real, A: Frame, B: Frame> Rotation<T, A, B> {
     /// first, so no digit is lost at any attitude (Shepperd 1978).
     #[inline(always)]
     pub fn from_axes(x: Vec3<T, B>, y: Vec3<T, B>, z: Vec3<T, B>) -> Self {
-        let one = T::one();
+        Self::from_scaled_axes(x, y, z, T::one())
+    }
+    /// [`Rotation::from_axes`] for axes that all have the length `one`.
+    #[inline(always)]
+    pub fn from_scaled_axes(x: Vec3<T, B>, y: Vec3<T, B>, z: Vec3<T, B>, one: T) -> Self {
         // Four times the square of each component; the largest is at least one.
         let w4 = one + x.x + y.y + z.z;
         let x4 = one + x.x - y.y - z.z;

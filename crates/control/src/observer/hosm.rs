@@ -133,7 +133,7 @@ impl<T: Real> Observer<T> for Hosm<T> {
         };
         let Self { gain0, gain1, gain2, x, z0, z1, z2, .. } = *self;
 
-        let v0 = z1 - (z0 - x).map(two_thirds_power) * gain2; // (1)
+        let v0 = z1 - (z0 - x).map(T::two_thirds_power) * gain2; // (1)
         let v1 = z2 - (z1 - v0).map(signed_root) * gain1; // (2)
         let z1_dot = match self.options.z2 {
             Z2::Single => v1 + u,
@@ -158,12 +158,6 @@ impl<T: Real> Observer<T> for Hosm<T> {
     fn limit(&self) -> T {
         self.gains.limit
     }
-}
-
-/// |a|^(2/3) sign(a).
-#[inline(always)]
-fn two_thirds_power<T: Real>(a: T) -> T {
-    a.cbrt().sq().with_sign(a)
 }
 
 /// |a|^(1/2) sign(a).

@@ -53,6 +53,8 @@ record! {
         gains: Gains<T> [];
         /// What the law believes of the vehicle.
         model: Model<T> [];
+        /// Reciprocal mass, as the law believes it.
+        per_mass: T [1/kg];
         /// Integral of the position error, S.
         integral: Vec3<T, World> [m s];
     }
@@ -61,7 +63,7 @@ record! {
 impl<T: Real> Pid<T> {
     /// The law at rest.
     pub fn new(gains: Gains<T>, _: Options, model: &Model<T>) -> Self {
-        Self { gains, model: *model, integral: Vec3::zero() }
+        Self { gains, model: *model, per_mass: T::one() / model.mass, integral: Vec3::zero() }
     }
 }
 
@@ -82,7 +84,7 @@ impl<T: Real> Controller<T> for Pid<T> {
         let f = -e.scale(kp) - self.integral.scale(ki) - e_dot.scale(kd) + reference.acceleration; // (2)
 
         let refused = measurement.attitude.z_axis()
-            * (measurement.unallocated.thrust / self.model.mass);
+            * (measurement.unallocated.thrust * self.per_mass);
         self.integral += (e + refused * anti_windup) * dt; // (3)
         // `clamp` would turn a sum that is not a number into one; so it stays for the guard to see.
         self.integral = self.integral.map(|s| {
@@ -101,6 +103,8 @@ impl<T: Real> Controller<T> for Pid<T> {
     }
 
     fn reset(&mut self, _: &Measurement<T>) {
+        // Prepared again, or a number broken in memory would break every command to come.
+        self.per_mass = T::one() / self.model.mass;
         self.integral = Vec3::zero();
     }
 

@@ -17,7 +17,7 @@
 //! bandwidth that `K_omega` asks for.
 
 use crate::controller::Controller;
-use crate::filter::Butterworth;
+use crate::filter::{Butterworth, Clock};
 use crate::math::{Body, Vec3};
 use crate::real::Real;
 use crate::signals::{Measurement, Model, Rate, Wrench};
@@ -62,6 +62,8 @@ record! {
         model: Model<T> [];
         /// Angular velocity of the previous tick.
         previous: Vec3<T, Body> [rad/s];
+        /// Time between two ticks.
+        clock: Clock<T> [];
         /// Filter of the angular acceleration.
         omega_dot: Butterworth<T> [];
         /// Filter of the achieved torque.
@@ -86,6 +88,7 @@ impl<T: Real> Controller<T> for Indi<T> {
 
     #[inline(always)]
     fn tune(&mut self, dt: T) {
+        self.clock.tune(dt);
         if self.options.filter == Filter::Butterworth {
             self.omega_dot.tune(self.gains.cutoff_hz, dt);
             self.torque.tune(self.gains.cutoff_hz, dt);
@@ -93,9 +96,9 @@ impl<T: Real> Controller<T> for Indi<T> {
     }
 
     #[inline(always)]
-    fn update(&mut self, measurement: &Measurement<T>, reference: &Rate<T>, dt: T) -> Wrench<T> {
+    fn update(&mut self, measurement: &Measurement<T>, reference: &Rate<T>, _: T) -> Wrench<T> {
         let omega = measurement.rate;
-        let raw = (omega - self.previous) * (T::one() / dt);
+        let raw = (omega - self.previous) * self.clock.per_step;
         self.previous = omega;
         let achieved = measurement.achieved.torque;
         let (omega_dot, tau) = match self.options.filter {
@@ -113,6 +116,7 @@ impl<T: Real> Controller<T> for Indi<T> {
 
     fn reset(&mut self, measurement: &Measurement<T>) {
         self.previous = measurement.rate;
+        self.clock = Clock::default();
         self.omega_dot = Butterworth::default();
         self.torque = Butterworth::default();
     }

@@ -262,7 +262,7 @@ impl Scenario {
             yaw_rate: first.yaw_rate,
             yaw_acceleration: first.yaw_acceleration,
         };
-        let attitude = attitude_along(thrust.force, first.yaw, None);
+        let attitude = attitude_along(thrust.force, first.yaw);
         let (rate, _) = flatness_rates(attitude, &thrust);
         State { attitude, rate, ..level }
     }

@@ -7,7 +7,7 @@
 //! integration step. The model behind the golden values of the repair ladder.
 
 use stormpetrel_control::math::{Body, Vec3, World};
-use stormpetrel_control::real::Real;
+use stormpetrel_control::real::{Mask, Real};
 use stormpetrel_control::record;
 use stormpetrel_control::signals::Wrench;
 use stormpetrel_control::stack::{Command, Exit};
@@ -35,6 +35,10 @@ record! {
         gains: Gains<T> [];
         /// What was commanded.
         ideal: IdealWrench<T> [];
+        /// Time for which `blend` holds; zero before the first.
+        step: T [s];
+        /// 1 - exp(-h/tau_m).
+        blend: T [1];
         /// Torque that acts.
         torque: Vec3<T, Body> [N m];
     }
@@ -42,8 +46,9 @@ record! {
 
 impl<T: Real> LaggedWrench<T> {
     /// At rest.
-    pub fn new(gains: Gains<T>, _: Options, _: &Vehicle<T>) -> Self {
-        Self { gains, ideal: IdealWrench::default(), torque: Vec3::zero() }
+    pub fn new(gains: Gains<T>, options: Options, vehicle: &Vehicle<T>) -> Self {
+        let ideal = IdealWrench::new(Default::default(), options, vehicle);
+        Self { gains, ideal, ..Self::default() }
     }
 }
 
@@ -57,8 +62,10 @@ impl<T: Real> Actuate<T> for LaggedWrench<T> {
     }
     #[inline(always)]
     fn pass(&mut self, h: T) {
-        let a = T::one() - (-h / self.gains.lag).exp();
-        self.torque += (self.ideal.wrench.torque - self.torque) * a; // (2)
+        if !self.step.eq(h).all() {
+            (self.step, self.blend) = (h, T::one() - (-h / self.gains.lag).exp());
+        }
+        self.torque += (self.ideal.wrench.torque - self.torque) * self.blend; // (2)
     }
     fn reset(&mut self) {
         self.ideal.reset();

@@ -18,7 +18,8 @@ pub trait Actuate<T: Real>: Plain<T> {
     fn exit(&self) -> Exit;
     /// Takes the command for the coming tick; returns the part that it cannot grant.
     fn command(&mut self, command: &Command<T>, vehicle: &Vehicle<T>) -> Wrench<T>;
-    /// Lets a lag of its own pass `h` seconds, before each integration step.
+    /// Told of each integration step of `h` seconds beforehand: a lag of its own passes them.
+    #[inline(always)]
     fn pass(&mut self, _h: T) {}
     /// Forgets what was commanded, as at the start of a flight.
     fn reset(&mut self) {}
@@ -28,11 +29,13 @@ pub trait Actuate<T: Real>: Plain<T> {
     fn torque(&self, state: &State<T>) -> Vec3<T, Body>;
     /// Total thrust along the body's up axis, N.
     fn thrust(&self, state: &State<T>) -> T;
-    /// Acceleration of the rotors, rad/s^2.
-    fn rotor_acceleration(&self, _state: &State<T>, _vehicle: &Vehicle<T>) -> [T; 4] {
-        [T::zero(); 4]
+    /// Rotor speeds at the middle and at the end of the step that `pass` was told of, rad/s.
+    #[inline(always)]
+    fn rotor_speeds(&self, state: &State<T>) -> [[T; 4]; 2] {
+        [state.rotor_speed; 2]
     }
     /// Share of the rotors at a speed limit, 0..=1.
+    #[inline(always)]
     fn saturation(&self) -> T {
         T::zero()
     }
@@ -74,13 +77,7 @@ macro_rules! dispatch_actuate {
             }
             #[inline(always)]
             fn command(&mut self, command: &Command<T>, vehicle: &Vehicle<T>) -> Wrench<T> {
-                let mut refused = Wrench::default();
-                match self { $( Self::$variant(all) => for i in 0..T::LANES {
-                    let mut one = all.pick(i);
-                    one.command(&command.pick(i), &vehicle.pick(i)).put(&mut refused, i);
-                    one.put(all, i);
-                } )+ }
-                refused
+                match self { $( Self::$variant(x) => x.command(command, vehicle), )+ }
             }
             #[inline(always)]
             fn pass(&mut self, h: T) {
@@ -106,8 +103,8 @@ macro_rules! dispatch_actuate {
                 self.wrench(state).thrust
             }
             #[inline(always)]
-            fn rotor_acceleration(&self, state: &State<T>, vehicle: &Vehicle<T>) -> [T; 4] {
-                match self { $( Self::$variant(x) => x.rotor_acceleration(state, vehicle), )+ }
+            fn rotor_speeds(&self, state: &State<T>) -> [[T; 4]; 2] {
+                match self { $( Self::$variant(x) => x.rotor_speeds(state), )+ }
             }
             #[inline(always)]
             fn saturation(&self) -> T {

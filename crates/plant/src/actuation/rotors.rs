@@ -1,17 +1,17 @@
 //! Four rotors with lag and speed limits behind an allocation.
 //!
 //!   Omega_cmd = sqrt(u/k),   u from the allocation                       (1)
-//!   Omega' = (Omega_cmd - Omega)/tau_m                                   (2)
+//!   Omega(t + h) = Omega_cmd + (Omega(t) - Omega_cmd) exp(-h/tau_m)      (2)
 //!   T = k sum Omega_i^2,   tau = B (k Omega_i^2)                         (3)
 //!
-//! Rotor speeds belong to the integrated state. The laws see thrust and torque from the measured
+//! (2) solves Omega' = (Omega_cmd - Omega)/tau_m for a held command. The laws see thrust and torque from the measured
 //! speeds (3) and the part of the command that the allocation refused.
 
 use stormpetrel_control::allocation::Allocation;
 use stormpetrel_control::math::{Body, Vec3, World};
-use stormpetrel_control::real::Real;
+use stormpetrel_control::real::{Mask, Real};
 use stormpetrel_control::record;
-use stormpetrel_control::record::Nothing;
+use stormpetrel_control::record::{Nothing, each, from_index};
 use stormpetrel_control::signals::Wrench;
 use stormpetrel_control::stack::{Command, Exit};
 
@@ -33,10 +33,16 @@ record! {
         thrust_coefficient: T [N s^2/rad^2];
         /// Its reciprocal.
         per_coefficient: T [rad^2/(N s^2)];
-        /// Reciprocal mass of the vehicle.
-        per_mass: T [1/kg];
-        /// Reciprocal time constant of the rotors.
-        per_lag: T [1/s];
+        /// k/m.
+        thrust_per_mass: T [m/rad^2];
+        /// k times the rows of B that give the torque.
+        arms: [[T; 4]; 3] [N m s^2/rad^2];
+        /// Time constant of the rotors.
+        lag: T [s];
+        /// Integration step for which the decays hold; zero before the first.
+        step: T [s];
+        /// exp(-h/(2 tau_m)): what remains of a distance (2) after half of the step.
+        half_decay: T [1];
         /// Speed asked of each rotor.
         commanded: [T; 4] [rad/s];
         /// Share of the rotors asked to run at a limit.
@@ -47,23 +53,31 @@ record! {
 impl Rotors<f64> {
     /// At rest.
     pub fn new(_: Gains<f64>, _: Options, vehicle: &Vehicle<f64>) -> Self {
+        let (allocation, k) = (vehicle.allocation(), vehicle.thrust_coefficient);
+        let [_, roll, pitch, yaw] = allocation.effect;
         Self {
-            allocation: vehicle.allocation(),
-            thrust_coefficient: vehicle.thrust_coefficient,
-            per_coefficient: 1.0 / vehicle.thrust_coefficient,
-            per_mass: 1.0 / vehicle.mass,
-            per_lag: 1.0 / vehicle.motor_lag,
+            allocation,
+            thrust_coefficient: k,
+            per_coefficient: 1.0 / k,
+            thrust_per_mass: k / vehicle.mass,
+            arms: [roll, pitch, yaw].map(|row| row.map(|arm| k * arm)),
+            lag: vehicle.motor_lag,
             commanded: [vehicle.hover_speed(); 4],
-            saturation: 0.0,
+            ..Self::default()
         }
     }
 }
 
-impl<T: Real> Rotors<T> {
-    #[inline(always)]
-    fn wrench(&self, state: &State<T>) -> Wrench<T> {
-        self.allocation.wrench(stormpetrel_control::record::each(state.rotor_speed, |w| self.thrust_coefficient * w.sq())) // (3)
-    }
+/// a + b + c + d, in pairs.
+#[inline(always)]
+fn sum<T: Real>([a, b, c, d]: [T; 4]) -> T {
+    a + b + (c + d)
+}
+
+/// The squares of the rotor speeds, rad^2/s^2.
+#[inline(always)]
+fn squares<T: Real>(state: &State<T>) -> [T; 4] {
+    each(state.rotor_speed, T::sq)
 }
 
 impl<T: Real> Actuate<T> for Rotors<T> {
@@ -72,37 +86,39 @@ impl<T: Real> Actuate<T> for Rotors<T> {
     }
     #[inline(always)]
     fn command(&mut self, command: &Command<T>, _: &Vehicle<T>) -> Wrench<T> {
-        let (thrusts, granted) = self.allocation.allocate(&command.wrench);
-        for (speed, thrust) in self.commanded.iter_mut().zip(thrusts) {
-            *speed = (thrust * self.per_coefficient).sqrt(); // (1)
-        }
-        let Allocation { lowest, highest, .. } = self.allocation;
-        let mut limited = T::zero();
-        for u in thrusts {
-            let free = lowest.lt(u) & u.lt(highest);
-            limited += T::select(free, T::zero(), T::lit(0.25));
-        }
-        self.saturation = limited;
-        Wrench {
-            thrust: command.wrench.thrust - granted.thrust,
-            torque: command.wrench.torque - granted.torque,
+        let allocated = self.allocation.allocate(&command.wrench);
+        self.commanded = each(allocated.thrusts, |u| (u * self.per_coefficient).sqrt()); // (1)
+        self.saturation = allocated.saturation;
+        allocated.refused
+    }
+    #[inline(always)]
+    fn pass(&mut self, h: T) {
+        if !self.step.eq(h).all() {
+            (self.step, self.half_decay) = (h, (-h.half() / self.lag).exp());
         }
     }
     #[inline(always)]
     fn thrust_per_mass(&self, state: &State<T>, _: &Vehicle<T>) -> Vec3<T, World> {
-        state.attitude.z_axis() * (self.wrench(state).thrust * self.per_mass)
+        state.attitude.z_axis() * (sum(squares(state)) * self.thrust_per_mass)
     }
     #[inline(always)]
     fn torque(&self, state: &State<T>) -> Vec3<T, Body> {
-        self.wrench(state).torque
+        let squares = squares(state);
+        let along = |axis: usize| sum(from_index(|i| self.arms[axis][i] * squares[i]));
+        Vec3::new(along(0), along(1), along(2)) // (3)
     }
     #[inline(always)]
     fn thrust(&self, state: &State<T>) -> T {
-        self.wrench(state).thrust
+        sum(squares(state)) * self.thrust_coefficient // (3)
     }
     #[inline(always)]
-    fn rotor_acceleration(&self, state: &State<T>, _: &Vehicle<T>) -> [T; 4] {
-        stormpetrel_control::record::from_index(|i| (self.commanded[i] - state.rotor_speed[i]) * self.per_lag) // (2)
+    fn rotor_speeds(&self, state: &State<T>) -> [[T; 4]; 2] {
+        let away: [T; 4] =
+            from_index(|i| (state.rotor_speed[i] - self.commanded[i]) * self.half_decay);
+        [
+            from_index(|i| self.commanded[i] + away[i]),
+            from_index(|i| self.commanded[i] + away[i] * self.half_decay),
+        ] // (2)
     }
     #[inline(always)]
     fn saturation(&self) -> T {

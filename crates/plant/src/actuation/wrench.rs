@@ -25,15 +25,15 @@ record! {
     pub struct IdealWrench {
         /// Thrust and torque.
         wrench: Wrench<T> [];
-        /// Thrust per mass.
-        per_mass: T [m/s^2];
+        /// Reciprocal mass of the vehicle.
+        per_mass: T [1/kg];
     }
 }
 
 impl<T: Real> IdealWrench<T> {
     /// At rest.
-    pub fn new(_: Gains<T>, _: Options, _: &Vehicle<T>) -> Self {
-        Self::default()
+    pub fn new(_: Gains<T>, _: Options, vehicle: &Vehicle<T>) -> Self {
+        Self { wrench: Wrench::default(), per_mass: T::one() / vehicle.mass }
     }
 }
 
@@ -42,17 +42,16 @@ impl<T: Real> Actuate<T> for IdealWrench<T> {
         Exit::Wrench
     }
     #[inline(always)]
-    fn command(&mut self, command: &Command<T>, vehicle: &Vehicle<T>) -> Wrench<T> {
+    fn command(&mut self, command: &Command<T>, _: &Vehicle<T>) -> Wrench<T> {
         self.wrench = command.wrench;
-        self.per_mass = command.wrench.thrust / vehicle.mass;
         Wrench::default()
     }
     fn reset(&mut self) {
-        *self = Self::default();
+        self.wrench = Wrench::default();
     }
     #[inline(always)]
     fn thrust_per_mass(&self, state: &State<T>, _: &Vehicle<T>) -> Vec3<T, World> {
-        state.attitude.z_axis() * self.per_mass // (1)
+        state.attitude.z_axis() * (self.wrench.thrust * self.per_mass) // (1)
     }
     #[inline(always)]
     fn torque(&self, _: &State<T>) -> Vec3<T, Body> {

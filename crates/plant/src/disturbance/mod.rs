@@ -19,20 +19,6 @@ pub trait Disturb<T: Real>: Plain<T> {
 
 macro_rules! dispatch_disturb {
     ($name:ident [$($variant:ident)+] ()) => {
-        impl<T: Real> $name<T> {
-            /// Adds the push at `time` seconds after the start.
-            #[inline(always)]
-            pub fn add(&self, push: &mut Push<T>, time: T, vehicle: &Vehicle<T>) {
-                match self { $( Self::$variant(all) => for i in 0..T::LANES {
-                    let one = all.pick(i).at(time.lane(i), &vehicle.pick(i));
-                    let mut sum = push.pick(i);
-                    sum.force += one.force;
-                    sum.torque += one.torque;
-                    sum.put(push, i);
-                } )+ }
-            }
-        }
-
         impl<T: Real> Disturb<T> for $name<T> {
             #[inline(always)]
             fn at(&self, time: T, vehicle: &Vehicle<T>) -> Push<T> {

@@ -12,7 +12,7 @@ use stormpetrel_control::registry::Settings;
 use stormpetrel_control::stack::{Laws, Stack};
 use stormpetrel_plant::actuation::{Actuate, ActuationSettings};
 use stormpetrel_plant::disturbance::{DisturbanceSettings, harmonic};
-use stormpetrel_plant::dynamics::{Held, Push, runge_kutta};
+use stormpetrel_plant::dynamics::{Held, Push, Reciprocals, runge_kutta};
 use stormpetrel_plant::flight::Flight;
 use stormpetrel_plant::reference::{Refer, ReferenceSettings};
 use stormpetrel_plant::state::State;
@@ -166,7 +166,7 @@ impl Free {
     ) -> State<f64> {
         let actuation =
             ActuationSettings::named("wrench").expect("an actuation").build(&self.vehicle);
-        let held = Held::new(&self.vehicle, &self.push);
+        let held = Held::new(&Reciprocals::new(&self.vehicle), &self.push);
         (0..steps).fold(start, |state, _| {
             let next = runge_kutta(&state, h, &self.vehicle, &actuation, &held);
             see(&next);
