@@ -1,5 +1,6 @@
 //! Arguments and help.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args as Group, Parser, Subcommand};
@@ -44,6 +45,16 @@ pub enum Command {
         after_help = "Examples:\n  stormpetrel run scenarios/first-flight.toml\n  stormpetrel run scenarios/first-flight.toml --set observer.law=none --out out/without\n  stormpetrel run scenarios/article/consistent.toml --variant rate-commanded --json"
     )]
     Run(Run),
+    /// Fly a scenario many times with drawn inputs: how often does it fail, and what decides?
+    #[command(
+        after_help = "Examples:\n  stormpetrel sweep scenarios/campaign/robustness.toml\n  stormpetrel sweep FILE --set campaign.flights=100000 --out out/big\n  stormpetrel sweep FILE --out out/big --resume\n  stormpetrel sweep FILE --shard 3/8 --out out/part3\n\nA file says what to vary in [[sweep]] tables:\n  campaign = { flights = 1000 }\n  [[sweep]]\n  path    = \"vehicle.mass\"\n  uniform = [0.5, 0.8]\nor log_uniform = [low, high], normal = [mean, sigma], grid = [low, high, count], list = [...];\nrelative = true multiplies the file's own number."
+    )]
+    Sweep(Sweep),
+    /// Join the parts of a campaign that was flown with --shard
+    #[command(
+        after_help = "Example:\n  stormpetrel merge FILE out/part1 out/part2 --out out/whole"
+    )]
+    Merge(Merge),
     /// Read a scenario file and say what is wrong with it, without flying
     #[command(
         after_help = "Example:\n  stormpetrel check scenarios/first-flight.toml --set position.kp=8"
@@ -86,6 +97,63 @@ pub struct Run {
     pub sets: Vec<String>,
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "out/run")]
+    pub out: PathBuf,
+}
+
+/// Which scenario with which changes, of `sweep` and `merge`.
+#[derive(Group)]
+pub struct Plan {
+    /// Scenario file with [[sweep]] tables
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Vary this variant of the file
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+    /// Change a setting: dotted path and value; may be given often
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub sets: Vec<String>,
+    /// Fly the inputs of this plan.csv instead of drawing them
+    #[arg(long = "plan", value_name = "CSV")]
+    pub drawn: Option<PathBuf>,
+}
+
+/// Arguments of `sweep`.
+#[derive(Group)]
+pub struct Sweep {
+    /// What to fly
+    #[command(flatten)]
+    pub plan: Plan,
+    /// Folder of the campaign
+    #[arg(long, value_name = "DIR", default_value = "out/sweep")]
+    pub out: PathBuf,
+    /// Go on with the campaign in the folder
+    #[arg(long)]
+    pub resume: bool,
+    /// Threads; all cores unless given
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+    /// Fly part I of N only, I from 1; `merge` joins the parts
+    #[arg(long, value_name = "I/N", conflicts_with = "until_interval")]
+    pub shard: Option<String>,
+    /// Stop once the 95 % interval of the success probability is this narrow
+    #[arg(long, value_name = "WIDTH")]
+    pub until_interval: Option<f64>,
+    /// Fly again with log and figures: worst=K, median, failures=K, every=K, separated by commas
+    #[arg(long, value_name = "WHICH", value_delimiter = ',')]
+    pub logs: Vec<String>,
+}
+
+/// Arguments of `merge`.
+#[derive(Group)]
+pub struct Merge {
+    /// What was flown
+    #[command(flatten)]
+    pub plan: Plan,
+    /// Folders of the parts
+    #[arg(value_name = "DIR", required = true)]
+    pub parts: Vec<PathBuf>,
+    /// Folder of the whole
+    #[arg(long, value_name = "DIR", default_value = "out/sweep")]
     pub out: PathBuf,
 }
 

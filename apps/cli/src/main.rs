@@ -9,6 +9,7 @@ mod explain;
 mod list;
 mod reproduce;
 mod run;
+mod sweep;
 mod terminal;
 
 use std::process::ExitCode;
@@ -16,6 +17,8 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Args, Command};
+use stormpetrel_lab::output::Refused;
+use stormpetrel_lab::scenario::fault::Faults;
 
 /// What went wrong, for the exit code.
 pub enum Failure {
@@ -23,11 +26,19 @@ pub enum Failure {
     Unmet,
     /// Bad input or a file that cannot be used: the message.
     Input(String),
+    /// Interrupted in an orderly way; what to do is printed already.
+    Interrupted,
 }
 
 impl Failure {
     /// A file or folder that cannot be used.
     pub fn file(path: &std::path::Path, error: &std::io::Error) -> Self {
+        if error.kind() == std::io::ErrorKind::Interrupted {
+            return Self::Interrupted;
+        }
+        if error.get_ref().is_some_and(|inner| inner.is::<Refused>()) {
+            return Self::Input(format!("error: {error}"));
+        }
         Self::Input(format!("error: {}: {error}", path.display()))
     }
 }
@@ -46,6 +57,8 @@ fn main() -> ExitCode {
     let done = match &args.command {
         Command::Reproduce(reproduce) => reproduce::reproduce(reproduce, &args.common),
         Command::Run(run) => run::run(run, &args.common),
+        Command::Sweep(sweep) => sweep::sweep(sweep, &args.common),
+        Command::Merge(merge) => sweep::merge(merge, &args.common),
         Command::Check(check) => check::check(check, &args.common),
         Command::List(list) => list::list(list, &args.common),
         Command::Explain(explain) => explain::explain(explain, &args.common),
@@ -54,6 +67,7 @@ fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Unmet) => ExitCode::from(1),
+        Err(Failure::Interrupted) => ExitCode::from(130),
         Err(Failure::Input(message)) => {
             anstream::eprintln!("{message}");
             ExitCode::from(2)

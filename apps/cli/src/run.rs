@@ -63,7 +63,7 @@ fn choose(file: File, variant: Option<&str>) -> Result<Vec<Scenario>, Failure> {
 }
 
 /// Flies one scenario and writes log, metrics, manifest and figures.
-fn fly_into(folder: &Folder, prefix: &str, scenario: Scenario) -> std::io::Result<Flown> {
+pub fn fly_into(folder: &Folder, prefix: &str, scenario: Scenario) -> std::io::Result<Flown> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number by rule
     let every = scenario.run.log_every as u64;
     let mut csv = Csv::new(folder.create(&format!("{prefix}flight.csv"))?, every)?;

@@ -2,6 +2,7 @@
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use anstyle::Style;
@@ -22,8 +23,18 @@ pub fn remember(staging: &Path) {
     STAGING.lock().unwrap_or_else(PoisonError::into_inner).push(staging.to_owned());
 }
 
-/// Removes what is half made and leaves with the code of an interrupted program.
+/// Set where the first interrupt must only ask for an end.
+pub static ORDERLY: AtomicBool = AtomicBool::new(false);
+/// Whether an end was asked for.
+pub static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Removes what is half made and leaves with the code of an interrupted program. Where an orderly end is
+/// possible the first interrupt asks for it, the second one leaves.
 pub fn interrupted() {
+    if ORDERLY.load(Ordering::Relaxed) && !STOP.swap(true, Ordering::Relaxed) {
+        anstream::eprintln!("\nfinishing the flights in hand; interrupt again to leave at once");
+        return;
+    }
     for folder in STAGING.lock().unwrap_or_else(PoisonError::into_inner).iter() {
         // Nothing more can be done about a folder that will not go.
         let _ = std::fs::remove_dir_all(folder);
@@ -61,6 +72,14 @@ pub fn progress(what: &'static str, quiet: bool) -> ProgressBar {
         bar.set_style(style.progress_chars("=> "));
     }
     bar
+}
+
+/// Gives the bar room for a message that tells rate and failures.
+pub fn with_rate(bar: &ProgressBar) {
+    if let Ok(style) = ProgressStyle::with_template("[{bar:20}] {pos}/{len} {elapsed}\n{wide_msg}")
+    {
+        bar.set_style(style.progress_chars("=> "));
+    }
 }
 
 /// Breaks a text into lines of at most `width` letters, between words.

@@ -1,6 +1,6 @@
 //! The figures of a flight.
 
-use crate::plot::{Figure, Limit, Panel, Path, Scale, Scene, Series};
+use crate::plot::{Figure, Limit, Panel, Path, Scene, Series};
 use crate::scenario::Scenario;
 use crate::trace::{Axes, Trace};
 
@@ -16,7 +16,7 @@ pub struct Drawing {
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 fn series<'a>(label: impl Into<String>, x: &'a [f64], y: &'a [f64], style: usize) -> Series<'a> {
-    Series { label: label.into(), x, y, style }
+    Series { label: label.into(), x, y, style, ..Series::default() }
 }
 
 fn panel<'a>(title: &str, y_label: &str, series: Vec<Series<'a>>) -> Panel<'a> {
@@ -24,9 +24,8 @@ fn panel<'a>(title: &str, y_label: &str, series: Vec<Series<'a>>) -> Panel<'a> {
         title: title.into(),
         x_label: "time (s)".into(),
         y_label: y_label.into(),
-        scale: Scale::Linear,
         series,
-        limits: Vec::new(),
+        ..Panel::default()
     }
 }
 

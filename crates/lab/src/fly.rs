@@ -1,11 +1,12 @@
 //! Flying scenarios: one by one, or eight side by side.
 
-use stormpetrel_control::lanes::Lanes;
-use stormpetrel_control::real::Real;
-use stormpetrel_control::record::RecordExt;
-use stormpetrel_plant::dispatch::{Width, Work};
-use stormpetrel_plant::flight::{Cause, Flight, Tick};
+use std::collections::BTreeMap;
 
+use stormpetrel_control::real::Real;
+use stormpetrel_plant::dispatch::Width;
+use stormpetrel_plant::flight::{Cause, Tick};
+
+use crate::batch::fly_alike;
 use crate::metric::{Distribution, Errors, Setting, Sums, metrics};
 use crate::scenario::Scenario;
 
@@ -37,7 +38,8 @@ impl Outcome {
     }
 }
 
-fn setting<T: Real>(scenario: &Scenario) -> Setting<T> {
+/// What does not change during this flight.
+pub(crate) fn setting<T: Real>(scenario: &Scenario) -> Setting<T> {
     Setting {
         dt: T::lit(scenario.run.control_step),
         late: T::lit(scenario.run.late),
@@ -46,27 +48,8 @@ fn setting<T: Real>(scenario: &Scenario) -> Setting<T> {
     }
 }
 
-/// The loop that every flight runs: decide, measure, move.
-#[inline(always)]
-fn run<T: Real>(
-    flight: &mut Flight<T>,
-    ticks: u64,
-    setting: &Setting<T>,
-    mut each: impl FnMut(&Tick<T>, &Errors<T>, T) -> bool,
-) -> Sums<T> {
-    let mut sums = Sums::new();
-    for _ in 0..ticks {
-        let tick = flight.decide();
-        let errors = sums.push(&tick, setting, flight.alive);
-        if !each(&tick, &errors, flight.alive) {
-            break;
-        }
-        flight.advance(&tick);
-    }
-    sums
-}
-
-fn failure(cause: f64, flown: f64, dt: f64) -> Option<Failure> {
+/// The failure with this code after so many ticks.
+pub(crate) fn failure(cause: f64, flown: f64, dt: f64) -> Option<Failure> {
     Cause::from_code(cause).map(|cause| Failure { time: flown * dt, cause })
 }
 
@@ -80,13 +63,17 @@ fn fly_seen(scenario: &Scenario, each: &mut dyn FnMut(&Tick<f64>, &Errors<f64>))
     let mut flight = scenario.flight();
     let mut distribution = Distribution::new(scenario.has_attitude());
     let setting = setting(scenario);
-    let sums = run(&mut flight, scenario.ticks(), &setting, |tick, errors, alive| {
-        if alive > 0.0 {
-            distribution.push(errors);
-            each(tick, errors);
+    let mut sums = Sums::new();
+    for _ in 0..scenario.ticks() {
+        if flight.alive == 0.0 {
+            break;
         }
-        alive > 0.0
-    });
+        let tick = flight.decide();
+        let errors = sums.push(&tick, &setting, flight.alive);
+        distribution.push(&errors);
+        each(&tick, &errors);
+        flight.advance(&tick);
+    }
     Outcome {
         metrics: metrics(&sums, &distribution),
         failure: failure(flight.cause, flight.flown, scenario.run.control_step),
@@ -94,7 +81,7 @@ fn fly_seen(scenario: &Scenario, each: &mut dyn FnMut(&Tick<f64>, &Errors<f64>))
 }
 
 /// Flies scenarios eight side by side, on the widest registers of the machine; each outcome has the
-/// bits of a single flight. Neighbours of one structure share a batch.
+/// bits of a single flight. Flights of one structure share the lanes.
 pub fn fly_batch(scenarios: &[Scenario]) -> Vec<Outcome> {
     fly_batch_at(scenarios, Width::widest())
 }
@@ -110,74 +97,24 @@ pub fn fly_batch_position(scenarios: &[Scenario]) -> Vec<Outcome> {
 }
 
 fn batches(scenarios: &[Scenario], width: Width, attitude: bool) -> Vec<Outcome> {
-    let mut outcomes = Vec::with_capacity(scenarios.len());
-    for group in scenarios.chunk_by(|a, b| a.structure() == b.structure()) {
-        for batch in group.chunks(LANES) {
-            match batch {
-                [alone] if attitude => outcomes.push(fly(alone, |_, _| {})),
-                batch => outcomes.extend(width.run(Batch::new(batch, attitude))),
+    let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for (row, scenario) in scenarios.iter().enumerate() {
+        groups.entry(scenario.structure()).or_default().push(row);
+    }
+    let mut outcomes = vec![None; scenarios.len()];
+    for rows in groups.values() {
+        let flown = match rows.as_slice() {
+            [alone] if attitude => vec![fly(&scenarios[*alone], |_, _| {})],
+            rows => {
+                let alike: Vec<&Scenario> = rows.iter().map(|row| &scenarios[*row]).collect();
+                fly_alike(&alike, width, attitude)
             }
+        };
+        for (row, outcome) in rows.iter().zip(flown) {
+            outcomes[*row] = Some(outcome);
         }
     }
-    outcomes
-}
-
-/// Up to eight flights of one structure, side by side.
-struct Batch {
-    count: usize,
-    ticks: u64,
-    steps: [f64; LANES],
-    setting: Setting<Lanes<f64, LANES>>,
-    flight: Flight<Lanes<f64, LANES>>,
-    distributions: Vec<Distribution>,
-}
-
-impl Batch {
-    fn new(batch: &[Scenario], attitude: bool) -> Self {
-        // Missing vehicles are doubles of the last: their results are dropped.
-        let last = batch.len() - 1;
-        let row = |i: usize| &batch[if i < last { i } else { last }];
-        let flights: [Flight<f64>; LANES] = std::array::from_fn(|i| row(i).flight());
-        let each = |f: fn(&Scenario) -> f64| Lanes(std::array::from_fn(|i| f(row(i))));
-        let setting = Setting {
-            dt: each(|s| s.run.control_step),
-            late: each(|s| s.run.late),
-            gravity: each(|s| s.model.gravity),
-            has_attitude: attitude && row(0).has_attitude(),
-        };
-        Self {
-            count: batch.len(),
-            ticks: row(0).ticks(),
-            steps: setting.dt.0,
-            setting,
-            flight: RecordExt::<f64>::gather(std::array::from_fn(|i| &flights[i])),
-            distributions: vec![Distribution::new(setting.has_attitude); batch.len()],
-        }
-    }
-}
-
-impl Work for Batch {
-    type Output = Vec<Outcome>;
-
-    #[inline(always)]
-    fn run(self) -> Vec<Outcome> {
-        let Self { count, ticks, steps, setting, mut flight, mut distributions } = self;
-        let sums = run(&mut flight, ticks, &setting, |_, errors, alive| {
-            let mut any = false;
-            for (i, distribution) in distributions.iter_mut().enumerate() {
-                if alive.lane(i) > 0.0 {
-                    distribution.push(&errors.pick(i));
-                    any = true;
-                }
-            }
-            any
-        });
-        let outcome = |i: usize| Outcome {
-            metrics: metrics(&sums.pick(i), &distributions[i]),
-            failure: failure(flight.cause.lane(i), flight.flown.lane(i), steps[i]),
-        };
-        (0..count).map(outcome).collect()
-    }
+    outcomes.into_iter().flatten().collect()
 }
 
 /// Maps over the items on all cores, in order.

@@ -1,12 +1,15 @@
 //! Experiments with quadrotor controllers: scenario files, metrics, logs, figures, and the article
 //! reproduced.
 
+mod batch;
+pub mod campaign;
 pub mod catalogue;
 pub mod figures;
 pub mod fly;
 pub mod log;
 pub mod metric;
 pub mod output;
+pub mod page;
 pub mod plot;
 pub mod reproduce;
 pub mod scenario;

@@ -23,12 +23,16 @@ record! {
         itae: T [];
         /// Largest absolute error.
         max: T [];
-        /// Largest absolute error in the late window.
+        /// Largest absolute error in the late window; negative while no sample lay in it.
         late_max: T [];
     }
 }
 
 impl<T: Real> Integrals<T> {
+    fn new() -> Self {
+        Self { late_max: -T::one(), ..Self::default() }
+    }
+
     #[inline(always)]
     fn push(&mut self, e: T, time: T, weight: T, late: T) {
         let e = e.abs();
@@ -37,7 +41,8 @@ impl<T: Real> Integrals<T> {
         self.itae += time * e * weight;
         let counted = T::select(T::zero().lt(weight), e, T::zero());
         self.max = self.max.max(counted); // (3)
-        self.late_max = self.late_max.max(counted * late);
+        let seen = T::select(T::zero().lt(weight * late), e, -T::one());
+        self.late_max = self.late_max.max(seen);
     }
 }
 
@@ -161,7 +166,17 @@ fn sum<T: Real, F: stormpetrel_control::math::Frame>(v: Vec3<T, F>) -> T {
 impl<T: Real> Sums<T> {
     /// Nothing flown yet.
     pub fn new() -> Self {
-        Self { inverted: -T::one(), ..Self::default() }
+        let none = Integrals::new();
+        Self {
+            inverted: -T::one(),
+            position: none,
+            axis: [none; 3],
+            angle: none,
+            euler: none,
+            tilt: none,
+            yaw: none,
+            ..Self::default()
+        }
     }
 
     /// Adds one tick; `alive` is 1 while the flight counts, else 0. Returns the errors of the tick.
@@ -276,7 +291,11 @@ pub const OF_SIGNALS: [About; 7] = [
         doc: "root mean square error: sqrt(ISE/T), T the time flown",
     },
     About { name: "*.max", unit: "*", doc: "largest absolute error" },
-    About { name: "*.late_max", unit: "*", doc: "largest absolute error from `run.late` on" },
+    About {
+        name: "*.late_max",
+        unit: "*",
+        doc: "largest absolute error from `run.late` on; absent where no sample lies there",
+    },
     About {
         name: "*.p95",
         unit: "*",
@@ -346,6 +365,17 @@ pub fn names() -> Vec<String> {
     let mut names: Vec<String> = SIGNALS.iter().flat_map(of).collect();
     names.extend(OF_FLIGHT.map(|metric| metric.name.to_owned()));
     names
+}
+
+/// Unit and definition of the metric of that flat name; empty for an unknown one.
+pub fn describe(name: &str) -> Option<(String, String)> {
+    if let Some(about) = OF_FLIGHT.iter().find(|about| about.name == name) {
+        return Some((about.unit.to_owned(), about.doc.to_owned()));
+    }
+    let pairs = SIGNALS.iter().flat_map(|signal| OF_SIGNALS.iter().map(move |of| (signal, of)));
+    let named = |(signal, of): &(&About, &About)| of.name.replace('*', signal.name) == name;
+    let (signal, of) = pairs.into_iter().find(named)?;
+    Some((of.unit.replace('*', signal.unit), format!("{}, of the {}", of.doc, signal.doc)))
 }
 
 /// Logarithmic histogram of one error signal: 64 bins an octave from 2^-30 to 2^10.
@@ -432,7 +462,9 @@ pub fn metrics(sums: &Sums<f64>, distribution: &Distribution) -> Vec<(String, f6
         let rmse = if time > 0.0 { (ise / time).sqrt() } else { 0.0 };
         let values = [iae, ise, itae, rmse, max, late_max, histogram.p95()];
         for (of, value) in OF_SIGNALS.iter().zip(values) {
-            all.push((of.name.replace('*', about.name), value));
+            if !(of.name == "*.late_max" && value < 0.0) {
+                all.push((of.name.replace('*', about.name), value));
+            }
         }
     }
     let per_time = if time > 0.0 { 1.0 / time } else { 0.0 };
@@ -473,4 +505,9 @@ fn assert_possible(name: &str, integrals: &Integrals<f64>, time: f64) {
         ise * (1.0 + slack) * time + tiny >= iae * iae,
         "{name}: ISE {ise} * T {time} < IAE^2, IAE {iae}"
     );
+}
+
+/// Whether the metric needs the attitude levels of the stack.
+pub fn of_attitude(name: &str) -> bool {
+    ["attitude.", "tilt.", "yaw."].iter().any(|signal| name.starts_with(signal))
 }

@@ -1,104 +1,23 @@
-//! Result files: written beside their place, then renamed, so that none is ever seen half-written.
+//! Results: the folder that they are put into, and what stands in them.
 
-use std::fs;
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+mod folder;
+mod own;
+mod refused;
 
 use serde_json::{Map, Value, json};
-use tempfile::TempDir;
 
 use crate::fly::Outcome;
 use crate::log::columns;
 use crate::scenario::Scenario;
 use crate::sensitivity::Spread;
 
+pub use folder::{Folder, Halt, halt};
+pub use refused::Refused;
+
 /// Version of the program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Revision of the source, or `unknown` outside a checkout.
 pub const REVISION: &str = env!("STORMPETREL_REVISION");
-
-/// A result folder in the making.
-#[derive(Debug)]
-pub struct Folder {
-    target: PathBuf,
-    staging: TempDir,
-}
-
-impl Folder {
-    /// Begins a folder; nothing appears at `target` before [`Folder::publish`].
-    ///
-    /// # Errors
-    /// Where the folder above cannot be made or written.
-    pub fn new(target: &Path) -> io::Result<Self> {
-        let parent = match target.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
-            _ => PathBuf::from("."),
-        };
-        if target.exists() && !target.is_dir() {
-            return Err(io::Error::other("exists and is not a folder"));
-        }
-        fs::create_dir_all(&parent)?;
-        let staging = tempfile::Builder::new().prefix(".stormpetrel-").tempdir_in(&parent)?;
-        Ok(Self { target: target.to_owned(), staging })
-    }
-
-    /// Where the files stand until they are published.
-    pub fn staging(&self) -> &Path {
-        self.staging.path()
-    }
-
-    /// A new file; folders in its name are made.
-    ///
-    /// # Errors
-    /// Where it cannot be made.
-    pub fn create(&self, name: &str) -> io::Result<BufWriter<fs::File>> {
-        let path = self.staging.path().join(name);
-        if let Some(parent) = path.parent() {
-            fs::create_dir_all(parent)?;
-        }
-        Ok(BufWriter::with_capacity(1 << 16, fs::File::create(path)?))
-    }
-
-    /// A new file with this content.
-    ///
-    /// # Errors
-    /// Where it cannot be written.
-    pub fn write(&self, name: &str, content: &[u8]) -> io::Result<()> {
-        let mut file = self.create(name)?;
-        file.write_all(content)?;
-        file.flush()
-    }
-
-    /// Moves every file to its place, replacing those of the same name.
-    ///
-    /// # Errors
-    /// Where a file cannot be moved.
-    pub fn publish(self) -> io::Result<()> {
-        if self.target.exists() {
-            return move_into(self.staging.path(), &self.target);
-        }
-        // A whole new folder appears in one stroke.
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            fs::set_permissions(self.staging.path(), fs::Permissions::from_mode(0o755))?;
-        }
-        fs::rename(self.staging.path(), &self.target)
-    }
-}
-
-fn move_into(from: &Path, to: &Path) -> io::Result<()> {
-    for entry in fs::read_dir(from)? {
-        let entry = entry?;
-        let target = to.join(entry.file_name());
-        if entry.file_type()?.is_dir() && target.is_dir() {
-            move_into(&entry.path(), &target)?;
-        } else {
-            fs::rename(entry.path(), target)?;
-        }
-    }
-    Ok(())
-}
 
 /// `metrics.json`: flat keys; a sensitive flight has median and range in place of numbers.
 pub fn metrics_json(outcome: &Outcome, spread: Option<&Spread>) -> Value {

@@ -133,6 +133,8 @@ record! {
         state: State<T> [];
         /// One over mass and inertia of the vehicle.
         per: Reciprocals<T> [];
+        /// Thrust that the laws expect over the true one.
+        belief: T [1];
         /// True mass over the mass that the laws believe.
         mass_ratio: T [1];
         /// The rotors' thrust per mass at the start of the tick.
@@ -145,10 +147,12 @@ record! {
         cause: T [1];
         /// Ticks flown.
         flown: T [count];
+        /// Tick of the batch at which the flight began; 0 where it flies alone.
+        begin: T [count];
         structure {
             /// Integration steps in one control step.
             substeps: u32;
-            /// Ticks since the start, common to all lanes.
+            /// Ticks since the batch began, common to all lanes.
             tick: u64;
         }
     }
@@ -159,6 +163,7 @@ impl<T: Real> Flight<T> {
     pub fn start(&mut self, state: State<T>) {
         self.state = state;
         self.per = Reciprocals::new(&self.vehicle);
+        self.belief = self.actuation.belief();
         self.mass_ratio = self.vehicle.mass / self.model.mass;
         self.actuation.reset();
         self.unallocated = Wrench::default();
@@ -169,7 +174,9 @@ impl<T: Real> Flight<T> {
 
     /// What the laws see: the true state, and the rotors as their model has them.
     #[inline(always)]
-    fn measure(&self, achieved: Wrench<T>) -> Measurement<T> {
+    fn measure(&self, wrench: Wrench<T>) -> Measurement<T> {
+        let Wrench { thrust, torque } = wrench;
+        let achieved = Wrench { thrust: thrust * self.belief, torque: torque * self.belief };
         let State { position, velocity, attitude, rate, .. } = self.state;
         Measurement { position, velocity, attitude, rate, achieved, unallocated: self.unallocated }
     }
@@ -177,7 +184,7 @@ impl<T: Real> Flight<T> {
     /// Time since the start, s: a count times the step, never a sum.
     #[inline(always)]
     pub fn time(&self) -> T {
-        T::lit(self.tick as f64) * self.control_step
+        (T::lit(self.tick as f64) - self.begin) * self.control_step
     }
 
     /// Reference, laws, actuation: everything that happens at the start of a tick.
@@ -228,7 +235,8 @@ impl<T: Real> Flight<T> {
             let (thrust, per_mass) = (self.thrust_per_mass.pick(i), self.per.mass.lane(i));
             let (vehicle, model) = (self.vehicle.pick(i), self.model.pick(i));
             let a = acceleration(thrust, push.force.pick(i) * per_mass, vehicle.gravity);
-            let lump = (a + Vec3::up(model.gravity)) * model.mass - thrust * vehicle.mass;
+            let expected = thrust * (vehicle.mass * self.belief.lane(i));
+            let lump = (a + Vec3::up(model.gravity)) * model.mass - expected;
             lump.put(&mut lumped, i);
         }
         lumped
@@ -241,7 +249,8 @@ impl<T: Real> Flight<T> {
         for i in 0..T::LANES {
             let (force, thrust) = (command.thrust.force.pick(i), self.thrust_per_mass.pick(i));
             let weight = Vec3::up(self.model.gravity.lane(i));
-            let (commanded, measured) = (force - weight, thrust * self.mass_ratio.lane(i) - weight);
+            let ratio = self.mass_ratio.lane(i) * self.belief.lane(i);
+            let (commanded, measured) = (force - weight, thrust * ratio - weight);
             Applied { commanded, measured }.put(&mut applied, i);
         }
         applied

@@ -1,6 +1,7 @@
 //! Horizontal bars, one line each, with the value written at the end.
 
 use super::axis::{Axis, Range, unit};
+use super::legend;
 use super::page::{EDGE, Font, LEFT, MIDDLE, Page, RIGHT};
 use super::style::{FAINT, GREY, GRID, INK, LIMIT_DASH, WIDTH, look};
 use super::text::{fit, value, width};
@@ -47,7 +48,7 @@ impl Bars {
         let top = page.heading(&self.title);
         let range = self.range();
         let axis = Axis { range, from: self.left(), to: WIDTH - self.right() };
-        let top = self.limit_names(&mut page, &axis, top);
+        let top = legend::above(&mut page, &self.marks(&axis), top);
         let bottom = self.groups.iter().fold(top + 6.0, |y, _| y + ROW);
         self.grid(&mut page, &axis, (top, bottom));
         let mut middle = top + 3.0 + 0.5 * ROW;
@@ -125,27 +126,6 @@ impl Bars {
         let mut marks: Vec<_> = all.filter(|m| m.0.is_finite()).collect();
         marks.sort_by(|a, b| a.0.total_cmp(&b.0));
         marks
-    }
-
-    /// Names of the limits above the plot, in as many rows as needed; gives the top of the plot.
-    fn limit_names(&self, page: &mut Page, axis: &Axis, top: f64) -> f64 {
-        let mut rows: Vec<f64> = Vec::new();
-        for (at, label) in self.marks(axis) {
-            let label = fit(label, 10.0, WIDTH - 2.0 * EDGE);
-            let half = 0.5 * width(&label, 10.0);
-            let middle = if at - half < EDGE { EDGE + half } else { at };
-            let end = WIDTH - EDGE - half;
-            let middle = if middle > end { end } else { middle };
-            let row = rows.iter().position(|right| middle - half > right + 10.0);
-            let row = row.unwrap_or(rows.len());
-            rows.resize(rows.len().max(row + 1), 0.0);
-            if let Some(right) = rows.get_mut(row) {
-                *right = middle + half;
-            }
-            let y = top + 10.0 + 13.0 * row as f64;
-            page.text((middle, y), &label, Font { size: 10.0, fill: GREY, ..MIDDLE });
-        }
-        top + if rows.is_empty() { 0.0 } else { 2.0 + 13.0 * rows.len() as f64 }
     }
 
     fn grid(&self, page: &mut Page, axis: &Axis, (top, bottom): (f64, f64)) {

@@ -2,15 +2,28 @@
 
 use super::Scale;
 use super::axis::{Axis, Range, unit};
+use super::extent::{points, ranges};
 use super::legend;
 use super::page::{EDGE, Font, LEFT, MIDDLE, Page, RIGHT};
-use super::style::{FAINT, GREY, GRID, INK, LIMIT_DASH, WIDTH};
+use super::style::{FAINT, GREY, GRID, INK, LIMIT_DASH, WIDTH, look};
 use super::text::{fit, value, width};
 use super::ticks::Ticks;
 
 /// Widest name of a limit in pixels; longer ones are cut.
 const NAME_ROOM: f64 = 190.0;
 const NAME: Font = Font { size: 10.0, fill: GREY, ..LEFT };
+
+/// How the points of a series are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mark {
+    /// Joined by a line.
+    #[default]
+    Line,
+    /// Each as a dot.
+    Dots,
+    /// Each as a cross; a value of infinity lies at the upper edge of the plot.
+    Crosses,
+}
 
 /// One curve. Points that are not finite break it; a point alone is drawn as a dot.
 #[derive(Clone, Debug, Default)]
@@ -23,6 +36,21 @@ pub struct Series<'a> {
     pub y: &'a [f64],
     /// Colour and dash pattern together, as an index that wraps round.
     pub style: usize,
+    /// How the points are shown.
+    pub mark: Mark,
+    /// Lower and upper ends of a vertical bar at each point, in the unit of `y`; empty for none.
+    pub spans: &'a [(f64, f64)],
+}
+
+/// A column of a histogram, drawn from zero upwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Column {
+    /// Left edge, in the unit the panel's `x_label` names.
+    pub from: f64,
+    /// Right edge, in the same unit.
+    pub to: f64,
+    /// Height, in the unit the panel's `y_label` names.
+    pub height: f64,
 }
 
 /// A bound the curves are judged against: a dashed grey line with its name beside the plot.
@@ -45,12 +73,22 @@ pub struct Panel<'a> {
     pub x_label: String,
     /// Vertical quantity and unit, for example "error (m)"; empty for none.
     pub y_label: String,
-    /// Scale of the vertical axis; the horizontal one is linear.
+    /// Scale of the vertical axis.
     pub scale: Scale,
+    /// Scale of the horizontal axis.
+    pub x_scale: Scale,
+    /// Values that the horizontal axis reaches at least; without them the points decide.
+    pub x_range: Option<(f64, f64)>,
+    /// Ends of the vertical axis, around everything drawn; without them the values decide.
+    pub y_range: Option<(f64, f64)>,
+    /// Columns, drawn behind the curves.
+    pub columns: Vec<Column>,
     /// The curves, drawn in this order.
     pub series: Vec<Series<'a>>,
     /// Horizontal lines to compare with.
     pub limits: Vec<Limit>,
+    /// Vertical lines to compare with, named above the plot.
+    pub x_limits: Vec<Limit>,
 }
 
 /// Panels under each other, 860 pixels wide.
@@ -65,7 +103,7 @@ pub struct Figure<'a> {
 }
 
 /// A limit in axis units, held inside the plot, with the text that names it.
-struct Mark {
+struct Bound {
     at: f64,
     text: String,
     inside: bool,
@@ -78,7 +116,7 @@ struct Prepared<'a> {
     y: Range,
     x_ticks: Ticks,
     y_ticks: Ticks,
-    marks: Vec<Mark>,
+    marks: Vec<Bound>,
 }
 
 impl Figure<'_> {
@@ -104,18 +142,12 @@ impl Figure<'_> {
 impl<'a> Prepared<'a> {
     fn new(panel: &'a Panel<'a>, height: f64) -> Self {
         let scale = panel.scale;
-        // Only points that will be drawn count, or a lone value without a partner widens the range.
-        let pairs = || panel.series.iter().flat_map(move |s| points(s, scale));
-        let drawn = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
-        let x = Range::of(pairs().filter(drawn).map(|p| p.0));
-        let data = Range::of(pairs().filter(drawn).map(|p| p.1));
-        let x = Range::settled(x, Scale::Linear, 0.0);
-        let y = Range::settled(reach(data, &panel.limits, scale), scale, 0.05);
+        let (x, y) = ranges(panel);
         Self {
             panel,
             x,
             y,
-            x_ticks: Ticks::new(x, Scale::Linear, 9),
+            x_ticks: Ticks::new(x, panel.x_scale, 9),
             y_ticks: Ticks::new(y, scale, if height > 200.0 { 6 } else { 4 }),
             marks: panel.limits.iter().filter_map(|l| mark(l, y, scale)).collect(),
         }
@@ -136,20 +168,23 @@ impl<'a> Prepared<'a> {
 
     /// Draws the panel below `top` and gives the height where the next one may begin.
     fn draw(&self, page: &mut Page, (left, right): (f64, f64), top: f64, height: f64) -> f64 {
-        let top = self.header(page, (left, right), top);
-        let bottom = top + height;
         let x = Axis { range: self.x, from: left, to: right };
+        let top = self.header(page, (left, right), top);
+        let x_marks = self.x_marks(&x);
+        let top = legend::above(page, &x_marks, top);
+        let bottom = top + height;
         let y = Axis { range: self.y, from: bottom, to: top };
         self.grid(page, &x, &y);
+        self.columns(page, &x, &y);
         self.limits(page, &x, &y);
+        for (at, _) in x_marks {
+            page.line((at, top), (at, bottom), GREY, 1.2, LIMIT_DASH);
+        }
         let size = (right - left, height);
         page.rect((left, top), size, &format!("fill=\"none\" stroke=\"{INK}\""));
-        let mut empty = true;
+        let mut empty = self.panel.columns.is_empty();
         for series in &self.panel.series {
-            let places = points(series, self.panel.scale).map(|(a, b)| (x.at(a), y.at(b)));
-            let places: Vec<_> = places.collect();
-            empty &= places.iter().all(|p| !(p.0.is_finite() && p.1.is_finite()));
-            page.curve(&places, series.style);
+            empty &= !self.series(page, series, &x, &y);
         }
         if empty {
             let font = Font { fill: GREY, ..MIDDLE };
@@ -162,6 +197,44 @@ impl<'a> Prepared<'a> {
         self.names(page, &x, bottom)
     }
 
+    /// Draws a series and tells whether any of it can be seen.
+    fn series(&self, page: &mut Page, series: &Series<'_>, x: &Axis, y: &Axis) -> bool {
+        // A symbol at the upper edge keeps clear of the frame.
+        let height = |b: f64| if b == f64::INFINITY { y.to + 9.0 } else { y.at(b) };
+        let places: Vec<_> =
+            points(series, self.panel).map(|(a, b)| (x.at(a), height(b))).collect();
+        match series.mark {
+            Mark::Line => page.curve(&places, series.style),
+            Mark::Dots => page.dots(&places, series.style),
+            Mark::Crosses => page.crosses(&places, series.style),
+        }
+        for ((at, value), (low, high)) in places.iter().zip(series.spans) {
+            let end = |v: f64| y.at(unit(v, self.panel.scale));
+            page.whisker(*at, (end(*low), *value, end(*high)), series.style);
+        }
+        places.iter().any(|p| p.0.is_finite() && p.1.is_finite())
+    }
+
+    fn columns(&self, page: &mut Page, x: &Axis, y: &Axis) {
+        let fill = format!("fill=\"{}\" fill-opacity=\"0.6\" stroke=\"#fff\"", look(0).0);
+        for column in &self.panel.columns {
+            let [from, to] = [column.from, column.to].map(|v| x.at(unit(v, self.panel.x_scale)));
+            let top = y.at(unit(column.height, self.panel.scale));
+            if from < to && top < y.from {
+                page.rect((from, top), (to - from, y.from - top), &fill);
+            }
+        }
+    }
+
+    /// Vertical lines inside the plot with their places in pixels, from left to right.
+    fn x_marks(&self, x: &Axis) -> Vec<(f64, &'a str)> {
+        let place = |l: &'a Limit| (x.at(unit(l.value, self.panel.x_scale)), l.label.as_str());
+        let mut marks: Vec<_> = self.panel.x_limits.iter().map(place).collect();
+        marks.retain(|m| (x.from..=x.to).contains(&m.0));
+        marks.sort_by(|a, b| a.0.total_cmp(&b.0));
+        marks
+    }
+
     /// Title and legend; gives the top of the plot.
     fn header(&self, page: &mut Page, (left, right): (f64, f64), top: f64) -> f64 {
         let font = Font { size: 13.0, ..LEFT };
@@ -169,8 +242,8 @@ impl<'a> Prepared<'a> {
         let title = fit(&self.panel.title, font.size, room);
         let mut y = top + if title.is_empty() { 0.0 } else { 13.0 };
         page.text((left, y), &title, font);
-        let entries = || self.panel.series.iter().map(|s| (s.label.as_str(), s.style));
-        if entries().any(|(label, _)| !label.is_empty()) {
+        let entries = || self.panel.series.iter().map(|s| (s.label.as_str(), s.style, s.mark));
+        if entries().any(|(label, ..)| !label.is_empty()) {
             // The legend has rows of its own, so that it begins at the same place in every panel.
             let first = y + if title.is_empty() { 12.0 } else { legend::ROW + 2.0 };
             y = legend::draw(page, entries(), (left, first), (left, right));
@@ -227,33 +300,16 @@ fn greater(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-/// The points of a series in axis units.
-fn points<'a>(series: &Series<'a>, scale: Scale) -> impl Iterator<Item = (f64, f64)> + use<'a> {
-    let pairs = series.x.iter().zip(series.y);
-    pairs.map(move |(x, y)| (unit(*x, Scale::Linear), unit(*y, scale)))
-}
-
-/// The range of the data, widened to the limits that leave the data an eighth of the height.
-fn reach(data: Option<Range>, limits: &[Limit], scale: Scale) -> Option<Range> {
-    let mut places: Vec<f64> = limits.iter().map(|l| unit(l.value, scale)).collect();
-    places.retain(|v| v.is_finite());
-    let Some(data) = data else { return Range::of(places.into_iter()) };
-    // A constant has no height to lose.
-    let constant = data.span() <= 1e-9 * greater(data.lo.abs(), data.hi.abs());
-    let fits = |v: &f64| constant || data.with(*v).span() <= 8.0 * data.span();
-    Some(places.into_iter().filter(fits).fold(data, Range::with))
-}
-
-fn mark(limit: &Limit, range: Range, scale: Scale) -> Option<Mark> {
+fn mark(limit: &Limit, range: Range, scale: Scale) -> Option<Bound> {
     let at = Some(unit(limit.value, scale)).filter(|v| v.is_finite())?;
     let beyond = |end, arrow| {
         let text = format!("{arrow} {} ({})", limit.label, value(limit.value));
-        Mark { at: end, text: fit(&text, NAME.size, NAME_ROOM), inside: false }
+        Bound { at: end, text: fit(&text, NAME.size, NAME_ROOM), inside: false }
     };
     Some(match at {
         v if v > range.hi => beyond(range.hi, '\u{2191}'),
         v if v < range.lo => beyond(range.lo, '\u{2193}'),
-        v => Mark { at: v, text: fit(&limit.label, NAME.size, NAME_ROOM), inside: true },
+        v => Bound { at: v, text: fit(&limit.label, NAME.size, NAME_ROOM), inside: true },
     })
 }
 

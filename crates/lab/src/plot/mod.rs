@@ -7,6 +7,7 @@
 mod axis;
 mod bars;
 mod decimate;
+mod extent;
 mod figure;
 mod legend;
 mod page;
@@ -18,7 +19,7 @@ mod text;
 mod ticks;
 
 pub use bars::{Bars, Group};
-pub use figure::{Figure, Limit, Panel, Series};
+pub use figure::{Column, Figure, Limit, Mark, Panel, Series};
 pub use path3d::{Path, Scene};
 #[cfg(feature = "png")]
 pub use png::{PngError, png};

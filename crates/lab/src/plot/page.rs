@@ -122,6 +122,53 @@ impl Page {
         }
     }
 
+    /// Small dots, pale enough that a crowd of them shows what lies below.
+    pub fn dots(&mut self, points: &[Point], style: usize) {
+        // A line without length and with round ends: the shortest way to write a dot.
+        let dot = |p: &Point| format!("M{} {}h0", coarse(p.0), coarse(p.1));
+        let look = "stroke-width=\"4\" stroke-linecap=\"round\" stroke-opacity=\"0.6\"";
+        self.symbols(points, dot, style, look);
+    }
+
+    /// Diagonal crosses.
+    pub fn crosses(&mut self, points: &[Point], style: usize) {
+        let cross =
+            |p: &Point| format!("M{} {}l6 6m0 -6l-6 6", coarse(p.0 - 3.0), coarse(p.1 - 3.0));
+        self.symbols(points, cross, style, "stroke-width=\"1.3\"");
+    }
+
+    fn symbols(
+        &mut self,
+        points: &[Point],
+        symbol: impl Fn(&Point) -> String,
+        style: usize,
+        look_more: &str,
+    ) {
+        let usable = points.iter().filter(|p| p.0.is_finite() && p.1.is_finite());
+        let data: String = usable.map(symbol).collect();
+        if !data.is_empty() {
+            let colour = look(style).0;
+            self.put(format_args!(
+                "<path d=\"{data}\" fill=\"none\" stroke=\"{colour}\" {look_more}/>\n"
+            ));
+        }
+    }
+
+    /// A vertical bar with feet, and a dot at the value.
+    pub fn whisker(&mut self, x: f64, (low, value, high): (f64, f64, f64), style: usize) {
+        if !(x.is_finite() && low.is_finite() && high.is_finite()) {
+            return;
+        }
+        let colour = look(style).0;
+        self.line((x, low), (x, high), colour, 1.2, "");
+        for end in [low, high] {
+            self.line((x - 3.0, end), (x + 3.0, end), colour, 1.2, "");
+        }
+        if value.is_finite() {
+            self.dot((x, value), 3.0, colour, false);
+        }
+    }
+
     /// A curve that only hints: thin, solid and pale.
     pub fn shadow(&mut self, points: &[Point], style: usize) {
         self.path(&runs(points), look(style).0, 1.0, " stroke-opacity=\"0.3\"");

@@ -1,6 +1,5 @@
 //! Paths through space, seen from above and to the side, without perspective.
 
-use super::Scale;
 use super::axis::{Axis, Range, unit};
 use super::decimate::Point;
 use super::legend;
@@ -8,6 +7,7 @@ use super::page::{EDGE, Font, LEFT, MIDDLE, Page, RIGHT};
 use super::style::{GREY, GRID, INK, WIDTH, look};
 use super::text::width;
 use super::ticks::Ticks;
+use super::{Mark, Scale};
 
 /// Screen direction (right, up) of the axes: the view from azimuth −60°, elevation 25°.
 const DIRECTIONS: [Point; 3] = [(0.8660, -0.2113), (0.5, 0.3660), (0.0, 0.9063)];
@@ -60,8 +60,8 @@ impl Scene<'_> {
     pub fn svg(&self) -> String {
         let mut page = Page::default();
         let mut top = page.heading(&self.title);
-        let entries = || self.paths.iter().map(|p| (p.label.as_str(), p.style));
-        if entries().any(|(label, _)| !label.is_empty()) {
+        let entries = || self.paths.iter().map(|p| (p.label.as_str(), p.style, Mark::Line));
+        if entries().any(|(label, ..)| !label.is_empty()) {
             top = legend::draw(&mut page, entries(), (EDGE, top + 8.0), (EDGE, WIDTH - EDGE));
         }
         let view = View::new(self.ranges(), top + 16.0);

@@ -4,20 +4,7 @@ use std::fmt::Write;
 
 use super::{Flown, Story, Table, tables};
 use crate::figures::Drawing;
-use crate::output::{REVISION, VERSION};
-
-const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#1a1a1a;background:#fff}\
-h1{font-size:1.7em}h2{margin-top:2.2em;border-bottom:2px solid #0072b2;padding-bottom:.2em}\
-.table{overflow-x:auto}table{border-collapse:collapse;font-size:14px;margin:1em 0}\
-th,td{padding:.3em .7em;text-align:right;border-bottom:1px solid #ddd;font-variant-numeric:tabular-nums;white-space:nowrap}\
-th:first-child,td:first-child{text-align:left;white-space:normal}thead th{border-bottom:2px solid #555;vertical-align:bottom}\
-.note{color:#444;font-size:14px}svg{max-width:100%;height:auto;display:block;margin:1em 0}\
-details{margin:.4em 0}summary{cursor:pointer}code{background:#f2f2f2;padding:0 .25em}";
-
-/// Text with the characters that HTML reserves replaced.
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
+use crate::page::{self, escape};
 
 /// The flights whose pictures stand in the story: name, and what the reader should see.
 pub const HEADLINES: [(&str, &str); 4] = [
@@ -41,12 +28,7 @@ pub const HEADLINES: [(&str, &str); 4] = [
 
 /// The page. `figures` gives the pictures of a flight by its name.
 pub fn html(story: &Story, figures: impl Fn(&Flown) -> Vec<Drawing>) -> String {
-    let mut page = String::with_capacity(4 << 20);
-    let _ = write!(
-        page,
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
-<title>The article reproduced - Stormpetrel</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>The article reproduced</h1>\n"
-    );
+    let mut page = page::open("The article reproduced");
     page.push_str(INTRODUCTION);
     let tables = tables(story);
     for table in &tables {
@@ -86,11 +68,7 @@ pub fn html(story: &Story, figures: impl Fn(&Flown) -> Vec<Drawing>) -> String {
             page.push_str("</details>\n");
         }
     }
-    let _ = writeln!(
-        page,
-        "<p class=\"note\">Stormpetrel {VERSION}, revision {}. Made by <code>stormpetrel reproduce</code>; the same numbers on every machine.</p>\n</body>\n</html>",
-        escape(REVISION)
-    );
+    page::close(&mut page, "<code>stormpetrel reproduce</code>");
     page
 }
 
@@ -106,25 +84,10 @@ and prints a table in which the proposal beats a plain PID. This page flies what
 Lumped disturbance: everything that the law's model does not explain, in newtons.</p>\n";
 
 fn write_table(page: &mut String, table: &Table) {
-    let _ = writeln!(
-        page,
-        "<h2>{}</h2>\n<p>{}</p>\n<div class=\"table\"><table>",
-        escape(&table.title),
-        escape(&table.lead)
-    );
-    let cells = |tag: &str, row: &[String]| {
-        row.iter().fold(String::new(), |mut line, cell| {
-            let _ = write!(line, "<{tag}>{}</{tag}>", escape(cell));
-            line
-        })
-    };
-    let _ = writeln!(page, "<thead><tr>{}</tr></thead>\n<tbody>", cells("th", &table.head));
-    for row in &table.rows {
-        let _ = writeln!(page, "<tr>{}</tr>", cells("td", row));
-    }
-    page.push_str("</tbody></table></div>\n");
+    let _ = writeln!(page, "<h2>{}</h2>\n<p>{}</p>", escape(&table.title), escape(&table.lead));
+    page::table(page, &table.head, &table.rows);
     for note in &table.notes {
-        let _ = writeln!(page, "<p class=\"note\">{}</p>", escape(note));
+        page::note(page, note);
     }
 }
 

@@ -10,6 +10,7 @@ pub use tables::{Table, row, tables};
 
 use crate::fly::{Outcome, fly, on_all_cores};
 use crate::scenario::Scenario;
+use crate::scenario::expect::Expectation;
 use crate::scenario::fault::Faults;
 use crate::sensitivity::{Spread, spreads};
 use crate::shipped::{SHIPPED, shipped};
@@ -30,15 +31,29 @@ pub struct Flown {
 }
 
 impl Flown {
-    /// Expectations of its file that it does not meet, with the value it shows. A sensitive flight
-    /// shows no number, so it cannot meet one.
-    pub fn unmet(&self) -> Vec<(String, f64)> {
-        let expect = self.scenario.expect.iter();
+    /// Expectations of its file that it does not meet, with what it shows in their place. A sensitive
+    /// flight shows no number, so it cannot meet one.
+    pub fn unmet(&self) -> Vec<(String, String)> {
+        let unmet = |e: &&Expectation| {
+            let value = self.outcome.get(&e.metric);
+            self.spread.is_some() || !value.is_some_and(|value| e.holds(value))
+        };
+        let expect = self.scenario.expect.iter().filter(unmet);
         expect
-            .map(|e| (e, self.outcome.get(&e.metric).unwrap_or(f64::NAN)))
-            .filter(|(e, value)| self.spread.is_some() || !e.holds(*value))
-            .map(|(e, value)| (format!("{} must be {}", e.metric, e.describe()), value))
+            .map(|e| (format!("{} must be {}", e.metric, e.describe()), self.shown(&e.metric)))
             .collect()
+    }
+
+    /// The metric in words, or why it is absent.
+    fn shown(&self, metric: &str) -> String {
+        match self.outcome.get(metric) {
+            Some(value) => format!("is {value:.6e}"),
+            None if metric.ends_with(".late_max") => {
+                format!("no sample after run.late = {} s", self.scenario.run.late)
+            }
+            None if metric == "tilt.inverted_at" => "the tilt never passed 90 deg".to_owned(),
+            None => "the flight does not have it".to_owned(),
+        }
     }
 
     /// Whether the flight failed although its scenario does not allow it.
@@ -46,9 +61,9 @@ impl Flown {
         self.outcome.failure.is_some() && !self.scenario.may_fail()
     }
 
-    /// The part of the name after the colon.
+    /// Name of the variant; of the scenario where it has none.
     pub fn variant(&self) -> &str {
-        self.scenario.name.split_once(':').map_or(self.scenario.name.as_str(), |(_, v)| v)
+        self.scenario.variant.as_deref().unwrap_or(&self.scenario.name)
     }
 }
 

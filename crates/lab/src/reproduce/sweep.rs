@@ -43,8 +43,7 @@ pub fn plan(files: &[(&'static str, File)]) -> Vec<Scenario> {
     let mut plan = Vec::new();
     for (_, file) in files.iter().filter(|(name, _)| FILES.contains(name)) {
         for scenario in &file.scenarios {
-            let variant = scenario.name.split_once(':').map_or("", |(_, variant)| variant);
-            if VARIANTS.contains(&variant) {
+            if scenario.variant.as_deref().is_some_and(|variant| VARIANTS.contains(&variant)) {
                 let mut scenario = scenario.clone();
                 scenario.failure.tilt_deg = 90.0;
                 plan.push(scenario);

@@ -3,6 +3,7 @@
 use super::article::TABLE;
 use super::sweep::upright_limit;
 use super::{Flown, Group, Story};
+use crate::page::number;
 
 /// A table: rows of cells under a head, with what is to be said about it.
 #[derive(Clone, Debug, Default)]
@@ -17,31 +18,6 @@ pub struct Table {
     pub rows: Vec<Vec<String>>,
     /// What must be said after it.
     pub notes: Vec<String>,
-}
-
-/// Three significant digits, plain where that is readable.
-pub fn number(x: f64) -> String {
-    if x == 0.0 {
-        return "0".into();
-    }
-    let magnitude = x.abs();
-    if !(1e-3..1e4).contains(&magnitude) {
-        return format!("{x:.2e}");
-    }
-    let digits = if magnitude >= 100.0 {
-        0
-    } else if magnitude >= 10.0 {
-        1
-    } else if magnitude >= 1.0 {
-        2
-    } else if magnitude >= 0.1 {
-        3
-    } else if magnitude >= 0.01 {
-        4
-    } else {
-        5
-    };
-    format!("{x:.digits$}")
 }
 
 fn cell(flown: &Flown, metric: &str) -> String {

@@ -121,7 +121,7 @@ pub fn parse(name: &str, text: String) -> Result<(Table, Arc<Source>), Faults> {
         return Err(Fault::general(format!(
             "{name}: {size} bytes: a scenario has at most {LONGEST}"
         ))
-        .help("put long tables of numbers into a file of their own")
+        .help("is this a scenario file?")
         .into());
     }
     let source = Arc::new(Source { name: name.into(), text });
@@ -130,10 +130,31 @@ pub fn parse(name: &str, text: String) -> Result<(Table, Arc<Source>), Faults> {
         let span = error.span().unwrap_or(end..end);
         let place = Place { source: Arc::clone(&source), span };
         let message = error.message().lines().next().unwrap_or_default().to_owned();
-        Faults::from(Fault::new(&place, format!("not TOML: {message}")))
+        let fault = Fault::new(&place, format!("not TOML: {message}"));
+        Faults::from(match decimal_comma(&place) {
+            Some(number) => fault.help(format!("write a point in numbers: {number}")),
+            None => fault,
+        })
     })?;
     let table = read_table(&source, table.get_ref())?;
     Ok((table, source))
+}
+
+/// The number with a point, where reading stopped at a comma within a number.
+fn decimal_comma(place: &Place) -> Option<String> {
+    let text = place.source.text.as_str();
+    let (before, after) = text.split_at_checked(place.span.start)?;
+    let line = |text: &str| text.rsplit('\n').next().unwrap_or_default().to_owned();
+    let before = line(before);
+    let after = after.lines().next().unwrap_or_default();
+    // Reading stops at the comma or behind it.
+    let (whole, digits) = match after.strip_prefix(',') {
+        Some(digits) => (before.as_str(), digits),
+        None => (before.trim_end().strip_suffix(',')?, after),
+    };
+    let whole = &whole[whole.trim_end_matches(|c: char| c.is_ascii_digit()).len()..];
+    let end = digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
+    (!whole.is_empty() && end > 0).then(|| format!("{whole}.{}", &digits[..end]))
 }
 
 fn place(source: &Arc<Source>, span: Range<usize>) -> Place {
@@ -163,8 +184,9 @@ fn read_value(source: &Arc<Source>, value: &Spanned<DeValue<'_>>) -> Result<Node
     };
     let value = match value.get_ref() {
         DeValue::Integer(x) if x.radix() == 10 => number(x.as_str(), true)?,
-        DeValue::Integer(x) => {
-            return Err(Fault::new(&here, format!("{}: write the number in decimal", x.as_str())));
+        DeValue::Integer(_) => {
+            let written = source.text.get(value.span()).unwrap_or_default();
+            return Err(Fault::new(&here, format!("{written}: write the number in decimal")));
         }
         DeValue::Float(x) => number(x.as_str(), false)?,
         DeValue::String(text) => Value::Text(text.to_string()),
@@ -199,9 +221,75 @@ pub fn parse_set(argument: &str) -> Result<Table, Faults> {
             .help(example)
             .into());
     }
-    let tree = parse("--set", format!("{path} = {value}")).or_else(|_| {
-        let quoted = value.replace('\\', "\\\\").replace('"', "\\\"");
-        parse("--set", format!("{path} = \"{quoted}\""))
-    });
-    tree.map(|(table, _)| table)
+    let tree = parse("--set", format!("{path} = {value}"));
+    // A list, a table or a number that begins well and ends badly is no text.
+    let begun = value.starts_with(['[', '{', '"', '\'', '+', '-', '.'])
+        || value.starts_with(|c: char| c.is_ascii_digit());
+    let (table, source) = match tree {
+        Err(faults) if begun => return Err(faults),
+        Err(_) => {
+            let quoted = value.replace('\\', "\\\\").replace('"', "\\\"");
+            parse("--set", format!("{path} = \"{quoted}\""))?
+        }
+        Ok(tree) => tree,
+    };
+    match table.0.as_slice() {
+        [_] => not_to_set(&table).map(|()| table),
+        _ => {
+            let end = source.text.len();
+            let place = Place { source, span: 0..end };
+            Err(Fault::new(&place, "--set changes one setting at a time").help(example).into())
+        }
+    }
+}
+
+/// Refuses settings that say which flights there are: they cannot be changed from outside.
+///
+/// # Errors
+/// A table with a variant in it.
+pub fn not_to_set(table: &Table) -> Result<(), Faults> {
+    match table.0.iter().find(|entry| entry.key == "variant") {
+        None => Ok(()),
+        Some(entry) => Err(Fault::new(&entry.place, "`variant` cannot be set")
+            .help("--variant NAME chooses one; a new one is a [[variant]] of the file")
+            .into()),
+    }
+}
+
+/// What `over` would do to items that are not there.
+pub fn missing_items(below: &Table, over: &Table, path: &str, faults: &mut Vec<Fault>) {
+    for entry in &over.0 {
+        let field =
+            if path.is_empty() { entry.key.clone() } else { format!("{path}.{}", entry.key) };
+        let Value::Table(above) = &entry.node.value else { continue };
+        match below.get(&entry.key).map(|node| &node.value) {
+            Some(Value::Table(below)) => missing_items(below, above, &field, faults),
+            Some(Value::List(items)) => missing_in_list(items, above, &field, faults),
+            _ => {}
+        }
+    }
+}
+
+fn missing_in_list(items: &[Node], over: &Table, field: &str, faults: &mut Vec<Fault>) {
+    for entry in &over.0 {
+        let Ok(number) = entry.key.parse::<usize>() else { continue };
+        match (items.get(number).map(|item| &item.value), &entry.node.value) {
+            (Some(Value::Table(below)), Value::Table(over)) => {
+                missing_items(below, over, &format!("{field}.{number}"), faults);
+            }
+            (Some(_), _) => {}
+            (None, _) => faults.push(
+                Fault::new(&entry.place, format!("there is no `{field}` number {number}"))
+                    .help(numbers(field, items.len())),
+            ),
+        }
+    }
+}
+
+fn numbers(field: &str, count: usize) -> String {
+    match count {
+        0 => format!("there is no {field}"),
+        1 => format!("there is 1 {field}, number 0"),
+        n => format!("there are {n} of {field}, numbers 0 to {}", n - 1),
+    }
 }

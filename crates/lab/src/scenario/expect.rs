@@ -2,7 +2,7 @@
 
 use super::document::{Node, Table, Value};
 use super::fault::{Fault, Place};
-use super::read::unknown;
+use super::read::{scientific, unknown};
 
 /// What a metric must be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +41,17 @@ impl Expectation {
         }
     }
 
+    /// Whether some number from `least` to `most` obeys.
+    pub fn possible(&self, least: f64, most: f64) -> bool {
+        match self.rule {
+            Rule::Within { value, tolerance } => {
+                value + tolerance >= least && value - tolerance <= most
+            }
+            Rule::Max(max) => max >= least,
+            Rule::Min(min) => min <= most,
+        }
+    }
+
     /// The rule in words.
     pub fn describe(&self) -> String {
         match self.rule {
@@ -68,11 +79,19 @@ pub fn read(table: &Table, prefix: &str, out: &mut Vec<Expectation>, faults: &mu
                 }
             }
             Value::Table(inner) => read(inner, &metric, out, faults),
-            _ => faults.push(
-                Fault::new(&entry.node.place, format!("`expect.{metric}` must be a table")).help(
-                    "write { value = 1.28, within_percent = 2.0 }, { max = 0.5 } or { min = 0.1 }",
-                ),
-            ),
+            other => {
+                let shown = match other {
+                    Value::Number(x, _) => scientific(*x),
+                    _ => "0.05".to_owned(),
+                };
+                let fault = Fault::new(
+                    &entry.node.place,
+                    format!("`expect.{metric}` does not say what is wanted"),
+                );
+                faults.push(fault.help(format!(
+                    "write {{ max = {shown} }}, {{ min = {shown} }} or {{ value = {shown}, within_percent = 2.0 }}"
+                )));
+            }
         }
     }
 }
@@ -99,13 +118,19 @@ fn rule(table: &Table, node: &Node, metric: &str) -> Result<Rule, Fault> {
         number("max")?,
         number("min")?,
     ];
+    for key in ["within_percent", "within"] {
+        if let Some(Node { value: Value::Number(x, _), place }) = table.get(key)
+            && *x < 0.0
+        {
+            let message = format!("`{field}.{key}` = {}: no distance is below 0", scientific(*x));
+            return Err(Fault::new(place, message).help("write it without the sign"));
+        }
+    }
     match given {
         [Some(value), Some(percent), None, None, None] => {
-            Ok(Rule::Within { value, tolerance: value.abs() * percent.abs() / 100.0 })
+            Ok(Rule::Within { value, tolerance: value.abs() * percent / 100.0 })
         }
-        [Some(value), None, Some(tolerance), None, None] => {
-            Ok(Rule::Within { value, tolerance: tolerance.abs() })
-        }
+        [Some(value), None, Some(tolerance), None, None] => Ok(Rule::Within { value, tolerance }),
         [None, None, None, Some(max), None] => Ok(Rule::Max(max)),
         [None, None, None, None, Some(min)] => Ok(Rule::Min(min)),
         _ => Err(Fault::new(&node.place, format!("`{field}`: the keys do not fit together"))

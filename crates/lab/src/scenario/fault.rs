@@ -46,11 +46,22 @@ impl Fault {
         Self { place: None, message: message.into(), help: None }
     }
 
+    /// Line and column, from 1, in letters.
+    pub fn position(&self) -> Option<(usize, usize)> {
+        let Place { source, span } = self.place.as_ref()?;
+        let before = source.text.get(..span.start)?;
+        let line = before.rsplit('\n').next().unwrap_or_default();
+        Some((before.matches('\n').count() + 1, line.chars().count() + 1))
+    }
+
     /// The same with advice.
     pub fn help(self, help: impl Into<String>) -> Self {
         Self { help: Some(help.into()), ..self }
     }
 }
+
+/// Faults that are shown; more of them hide the first.
+const SHOWN: usize = 20;
 
 /// All that is wrong, in the order of the file.
 #[derive(Clone, Debug, Default)]
@@ -76,18 +87,29 @@ impl std::error::Error for Faults {}
 
 impl fmt::Display for Faults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, fault) in self.0.iter().enumerate() {
+        for (i, fault) in self.0.iter().take(SHOWN).enumerate() {
             if i > 0 {
                 f.write_str("\n\n")?;
             }
             f.write_str(&render(fault))?;
         }
-        Ok(())
+        match self.0.len().saturating_sub(SHOWN) {
+            0 => Ok(()),
+            more => write!(f, "\n\nand {more} more"),
+        }
     }
 }
 
+/// The text without letters that would steer a terminal.
+pub fn printable(text: &str) -> String {
+    let steers = |c: char| c.is_control() && c != '\n';
+    text.chars().map(|c| if steers(c) { char::REPLACEMENT_CHARACTER } else { c }).collect()
+}
+
 fn render(fault: &Fault) -> String {
-    let title = Level::ERROR.primary_title(fault.message.as_str());
+    let message = printable(&fault.message);
+    let help = fault.help.as_deref().map(printable);
+    let title = Level::ERROR.primary_title(message.as_str());
     let mut group = match &fault.place {
         Some(Place { source, span }) => title.element(
             Snippet::source(source.text.as_str())
@@ -96,7 +118,7 @@ fn render(fault: &Fault) -> String {
         ),
         None => title.elements(Vec::<annotate_snippets::Message<'_>>::new()),
     };
-    if let Some(help) = &fault.help {
+    if let Some(help) = &help {
         group = group.element(Level::HELP.message(help.as_str()));
     }
     Renderer::plain().render(&[group])

@@ -7,6 +7,7 @@ mod load;
 pub mod read;
 mod resolve;
 mod schema;
+mod source;
 
 use stormpetrel_control::attitude::AttitudeLawSettings;
 use stormpetrel_control::attitude_reference::{
@@ -29,7 +30,7 @@ use stormpetrel_plant::reference::{Refer, ReferenceSettings};
 use stormpetrel_plant::state::State;
 use stormpetrel_plant::vehicle::VehicleSettings;
 
-pub use load::{File, load, load_text};
+pub use load::{Base, File, load, load_text, too_long};
 pub use schema::schema;
 
 record! {
@@ -99,6 +100,8 @@ options! {
 pub struct Scenario {
     /// `article/consistent`, with `:name` for a variant.
     pub name: String,
+    /// Name of the variant, where it is one.
+    pub variant: Option<String>,
     /// One line.
     pub title: String,
     /// What it shows.

@@ -114,7 +114,6 @@ impl VisitorMut<f64> for Reader<'_> {
                     }
                 }
             },
-            Value::List(_) | Value::Table(_) if dotted.contains('.') => {}
             Value::Text(_) | Value::Flag(_) if dotted.contains('.') && self.in_vector(&dotted) => {}
             other => self.faults.push(wrong_type(&node.place, &field, other, meta.unit)),
         }
@@ -166,8 +165,10 @@ impl OptionVisitor for Reader<'_> {
 /// Why a number cannot be taken, and what may have been meant.
 fn refuse(field: &str, x: f64, whole: bool, meta: &Meta) -> Option<(String, Option<String>)> {
     let (lo, hi) = meta.range;
+    let unit = if meta.unit == "1" { String::new() } else { format!(" {}", meta.unit) };
+    let range = format!("{} to {}{unit}", scientific(lo), scientific(hi));
     if !x.is_finite() {
-        return Some((format!("`{field}` = {x}: must be a finite number"), None));
+        return Some((format!("`{field}` = {x}: must be a finite number, {range}"), None));
     }
     if meta.unit == "count" && !whole && x.fract() != 0.0 {
         return Some((format!("`{field}` = {x}: must be a whole number"), None));
@@ -175,8 +176,13 @@ fn refuse(field: &str, x: f64, whole: bool, meta: &Meta) -> Option<(String, Opti
     if x >= lo && x <= hi {
         return None;
     }
-    let unit = if meta.unit == "1" { String::new() } else { format!(" {}", meta.unit) };
-    Some((format!("`{field}` = {x}: must lie in {lo} to {hi}{unit}"), slip(x, meta)))
+    Some((format!("`{field}` = {}: must lie in {range}", scientific(x)), slip(x, meta)))
+}
+
+/// A number as a human would write it: very large and very small ones with a power of ten.
+pub fn scientific(x: f64) -> String {
+    let size = x.abs();
+    if size >= 1e7 || (size < 1e-5 && size > 0.0) { format!("{x:e}") } else { x.to_string() }
 }
 
 /// The unit that was probably meant, if the number fits in it.
@@ -202,9 +208,12 @@ fn round(x: f64) -> f64 {
 
 /// A name that nobody knows, with the nearest one that somebody does.
 pub fn unknown(place: &Place, what: &str, shown: &str, name: &str, known: &[&str]) -> Fault {
+    // A very long name is near to nothing, and would take long to compare.
+    let short: String = name.chars().take(64).collect::<String>().to_lowercase();
+    let name = short.as_str();
     let nearest = known
         .iter()
-        .map(|candidate| (strsim::damerau_levenshtein(name, candidate), *candidate))
+        .map(|candidate| (strsim::damerau_levenshtein(name, &candidate.to_lowercase()), *candidate))
         .filter(|(distance, candidate)| {
             *distance <= 1 + candidate.len() / 3
                 || candidate.starts_with(name)
@@ -237,18 +246,24 @@ pub fn wrong_type(place: &Place, field: &str, value: &Value, unit: &str) -> Faul
     let want = match unit {
         "" => "a table".to_owned(),
         "text" => "a text".to_owned(),
+        "tables" => "a list of tables".to_owned(),
         "1" | "count" => "a number".to_owned(),
         unit => format!("a number in {unit}"),
     };
     let fault = Fault::new(place, format!("`{field}` is {got}: must be {want}"));
     match value {
         Value::Text(text) if want.starts_with("a number") => {
+            // A comma between digits is a decimal one.
             let digits: String = text
                 .trim()
+                .replace(',', ".")
                 .chars()
                 .take_while(|c| c.is_ascii_digit() || "+-.eE".contains(*c))
                 .collect();
             match digits.parse::<f64>() {
+                Ok(_) if text.contains(',') => {
+                    fault.help(format!("write {digits}: with a point, without quotes and unit"))
+                }
                 Ok(_) => fault.help(format!("write {digits} without quotes and without unit")),
                 Err(_) => fault,
             }

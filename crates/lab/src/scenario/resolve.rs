@@ -19,6 +19,7 @@ impl Scenario {
         let vehicle: VehicleSettings = first();
         Self {
             name,
+            variant: None,
             title: String::new(),
             about: String::new(),
             run: Run::default(),

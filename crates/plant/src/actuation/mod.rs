@@ -34,6 +34,11 @@ pub trait Actuate<T: Real>: Plain<T> {
     fn rotor_speeds(&self, state: &State<T>) -> [[T; 4]; 2] {
         [state.rotor_speed; 2]
     }
+    /// Thrust and torque that the laws expect over those that act.
+    #[inline(always)]
+    fn belief(&self) -> T {
+        T::one()
+    }
     /// Share of the rotors at a speed limit, 0..=1.
     #[inline(always)]
     fn saturation(&self) -> T {
@@ -105,6 +110,10 @@ macro_rules! dispatch_actuate {
             #[inline(always)]
             fn rotor_speeds(&self, state: &State<T>) -> [[T; 4]; 2] {
                 match self { $( Self::$variant(x) => x.rotor_speeds(state), )+ }
+            }
+            #[inline(always)]
+            fn belief(&self) -> T {
+                match self { $( Self::$variant(x) => x.belief(), )+ }
             }
             #[inline(always)]
             fn saturation(&self) -> T {

@@ -4,14 +4,15 @@
 //!   Omega(t + h) = Omega_cmd + (Omega(t) - Omega_cmd) exp(-h/tau_m)      (2)
 //!   T = k sum Omega_i^2,   tau = B (k Omega_i^2)                         (3)
 //!
-//! (2) solves Omega' = (Omega_cmd - Omega)/tau_m for a held command. The laws see thrust and torque from the measured
+//! (2) solves Omega' = (Omega_cmd - Omega)/tau_m for a held command. k may differ from the k that the
+//! allocation (1) and the laws expect (`efficiency`). The laws see thrust and torque from the measured
 //! speeds (3) and the part of the command that the allocation refused.
 
 use stormpetrel_control::allocation::Allocation;
 use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::{Mask, Real};
 use stormpetrel_control::record;
-use stormpetrel_control::record::{Nothing, each, from_index};
+use stormpetrel_control::record::{each, from_index};
 use stormpetrel_control::signals::Wrench;
 use stormpetrel_control::stack::{Command, Exit};
 
@@ -19,8 +20,14 @@ use super::Actuate;
 use crate::state::State;
 use crate::vehicle::Vehicle;
 
-/// Nothing to set: the rotors belong to the vehicle.
-pub type Gains<T> = Nothing<T>;
+record! {
+    /// How the rotors differ from what the laws know of them.
+    pub struct Gains {
+        /// True thrust and drag torque over what the laws and the allocation expect at the same speed.
+        efficiency: T [1] = 1.0, in 1e-3 => 10.0;
+    }
+}
+
 /// No choices.
 pub type Options = ();
 
@@ -29,9 +36,11 @@ record! {
     pub struct Rotors {
         /// The layout, inverted.
         allocation: Allocation<T> [];
-        /// Thrust coefficient k.
+        /// Expected over true thrust.
+        belief: T [1];
+        /// True thrust coefficient k.
         thrust_coefficient: T [N s^2/rad^2];
-        /// Its reciprocal.
+        /// Reciprocal of the expected one.
         per_coefficient: T [rad^2/(N s^2)];
         /// k/m.
         thrust_per_mass: T [m/rad^2];
@@ -52,13 +61,15 @@ record! {
 
 impl Rotors<f64> {
     /// At rest.
-    pub fn new(_: Gains<f64>, _: Options, vehicle: &Vehicle<f64>) -> Self {
-        let (allocation, k) = (vehicle.allocation(), vehicle.thrust_coefficient);
+    pub fn new(gains: Gains<f64>, _: Options, vehicle: &Vehicle<f64>) -> Self {
+        let (allocation, expected) = (vehicle.allocation(), vehicle.thrust_coefficient);
+        let k = expected * gains.efficiency;
         let [_, roll, pitch, yaw] = allocation.effect;
         Self {
             allocation,
+            belief: 1.0 / gains.efficiency,
             thrust_coefficient: k,
-            per_coefficient: 1.0 / k,
+            per_coefficient: 1.0 / expected,
             thrust_per_mass: k / vehicle.mass,
             arms: [roll, pitch, yaw].map(|row| row.map(|arm| k * arm)),
             lag: vehicle.motor_lag,
@@ -119,6 +130,10 @@ impl<T: Real> Actuate<T> for Rotors<T> {
             from_index(|i| self.commanded[i] + away[i]),
             from_index(|i| self.commanded[i] + away[i] * self.half_decay),
         ] // (2)
+    }
+    #[inline(always)]
+    fn belief(&self) -> T {
+        self.belief
     }
     #[inline(always)]
     fn saturation(&self) -> T {

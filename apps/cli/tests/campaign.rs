@@ -1,0 +1,193 @@
+//! Campaigns as a user runs, interrupts and kills them.
+#![cfg(unix)]
+#![allow(clippy::expect_used, clippy::print_stdout)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+const FILE: &str = r#"
+run                = { duration = 2.0, control_step = 0.001, substeps = 1, seed = 3, late = 1.0 }
+vehicle            = { model = "article-corrected" }
+model              = { mass = 0.625 }
+reference          = { shape = "helix" }
+position           = { law = "pid" }
+observer           = { law = "hosm" }
+attitude_reference = { law = "rotation" }
+attitude           = { law = "tilt-priority" }
+rate               = { law = "indi" }
+actuation          = { kind = "rotors" }
+failure            = { position_error = 0.3, allowed = true }
+campaign           = { flights = 2000, metrics = "position" }
+[[sweep]]
+path    = "vehicle.mass"
+uniform = [0.4, 1.2]
+[[sweep]]
+path        = "vehicle.motor_lag"
+log_uniform = [0.005, 0.2]
+"#;
+
+struct Bench {
+    folder: TempDir,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join("c.toml"), FILE).expect("a file");
+        Self { folder }
+    }
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+    fn command(&self, out: &str, more: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_stormpetrel"));
+        command.args(["sweep", "c.toml", "--quiet", "--out", out]).args(more);
+        command.current_dir(self.folder.path()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+    fn start(&self, out: &str, more: &[&str]) -> Child {
+        self.command(out, more).spawn().expect("the program starts")
+    }
+    fn run(&self, out: &str, more: &[&str]) -> Output {
+        self.command(out, more).output().expect("the program starts")
+    }
+    /// Results, summary and report of a finished campaign.
+    fn results(&self, out: &str) -> Vec<Vec<u8>> {
+        ["results.parquet", "summary.json", "report.html"]
+            .map(|name| fs::read(self.path(out).join(name)).expect(name))
+            .to_vec()
+    }
+}
+
+fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill").args([name, &child.id().to_string()]).status();
+    assert!(sent.expect("kill exists").success());
+}
+
+fn message(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Kills campaigns at random moments until `kills` are reached, resuming each until it is complete.
+fn kill_and_resume(kills: u32) -> (u32, u32) {
+    let bench = Bench::new();
+    let begin = Instant::now();
+    assert!(bench.run("whole", &[]).status.success());
+    let whole = bench.results("whole");
+    let longest = begin.elapsed().as_secs_f64();
+    let (mut killed, mut complete, mut state) = (0, 0, 0x9E37_79B9_7F4A_7C15_u64);
+    while killed < kills {
+        let out = format!("killed{complete}");
+        loop {
+            let begun = bench.path(&out).join("campaign.json").exists();
+            let mut child = bench.start(&out, if begun { &["--resume"] } else { &[] });
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            let share = (state >> 33) as f64 / 2_147_483_648.0;
+            std::thread::sleep(Duration::from_secs_f64(share * longest));
+            if child.try_wait().expect("waits").is_none() && killed < kills {
+                signal(&child, "-KILL");
+                killed += 1;
+            }
+            let status = child.wait_with_output().expect("ended");
+            if status.status.success() {
+                break;
+            }
+            assert!(status.status.code().is_none(), "{}", message(&status));
+        }
+        complete += 1;
+        assert!(whole == bench.results(&out), "after {killed} kills");
+        fs::remove_dir_all(bench.path(&out)).expect("removed");
+    }
+    (killed, complete)
+}
+
+#[test]
+fn a_killed_campaign_goes_on_to_the_same_files() {
+    // Debug builds fly slowly: one kill is enough there.
+    kill_and_resume(if cfg!(debug_assertions) { 1 } else { 6 });
+}
+
+#[test]
+#[ignore = "200 kills: run by cargo xtask abuse"]
+fn abuse_two_hundred_kills() {
+    let (killed, complete) = kill_and_resume(200);
+    println!("{killed} kills, {complete} campaigns complete, all with the same bytes");
+}
+
+#[test]
+fn an_interrupt_ends_in_order_and_can_be_resumed() {
+    let bench = Bench::new();
+    let child = bench.start("stopped", &["--set", "campaign.flights=200000"]);
+    let journal = bench.path("stopped").join("journal.bin");
+    let flown = |path: &Path| fs::metadata(path).is_ok_and(|meta| meta.len() > 1000);
+    let begin = Instant::now();
+    while !flown(&journal) && begin.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    signal(&child, "-INT");
+    let asked = Instant::now();
+    let output = child.wait_with_output().expect("ended");
+    assert_eq!(output.status.code(), Some(130), "{}", message(&output));
+    assert!(message(&output).contains("--resume goes on"), "{}", message(&output));
+    if !cfg!(debug_assertions) {
+        assert!(asked.elapsed() < Duration::from_secs(5), "an orderly end is quick");
+    }
+    assert!(!bench.path("stopped").join("results.parquet").exists());
+    // A narrow answer is reached soon after: what was flown counts.
+    let more = ["--set", "campaign.flights=200000", "--resume", "--until-interval", "0.2"];
+    let output = bench.run("stopped", &more);
+    assert!(output.status.success(), "{}", message(&output));
+}
+
+#[test]
+fn what_cannot_be_flown_is_refused_with_advice() {
+    let bench = Bench::new();
+    fs::write(
+        bench.path("plain.toml"),
+        FILE.split("[[sweep]]").next().expect("a head").replace("campaign ", "# "),
+    )
+    .expect("a file");
+    let cases: [(&[&str], &str); 8] = [
+        (&["--set", "campaign.flights=1e12"], "must lie in 0 to 1e8"),
+        (&["--set", "campaign.flights=1e8", "--set", "run.duration=1e4"], "would take"),
+        (&["--shard", "9/8"], "must be I/N"),
+        (&["--until-interval", "2"], "must lie between 0 and 1"),
+        (&["--logs", "best=3"], "worst=K"),
+        (&["--resume"], "there is no campaign to resume"),
+        (&["--set", "sweep.0.path=vehicle.mas"], "sweep `vehicle.mas`"),
+        (&["--set", "sweep.0.uniform=[0.0, 0.5]"], "must lie in 0.001 to 100 kg"),
+    ];
+    for (more, expected) in cases {
+        let begin = Instant::now();
+        let output = bench.run("refused", more);
+        assert_eq!(output.status.code(), Some(2), "{more:?}: {}", message(&output));
+        assert!(message(&output).contains(expected), "{more:?}: {}", message(&output));
+        if !cfg!(debug_assertions) {
+            assert!(begin.elapsed() < Duration::from_secs(2), "{more:?} is refused at once");
+        }
+        assert!(!bench.path("refused").exists(), "{more:?} leaves nothing");
+    }
+}
+
+#[test]
+fn two_processes_do_not_share_a_campaign() {
+    let bench = Bench::new();
+    let child = bench.start("shared", &["--set", "campaign.flights=200000"]);
+    let begin = Instant::now();
+    while !bench.path("shared").join("journal.bin").exists() && begin.elapsed().as_secs() < 60 {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let second = bench.run("shared", &["--set", "campaign.flights=200000", "--resume"]);
+    assert_eq!(second.status.code(), Some(2));
+    assert!(
+        message(&second).contains("another process flies this campaign"),
+        "{}",
+        message(&second)
+    );
+    signal(&child, "-INT");
+    assert_eq!(child.wait_with_output().expect("ended").status.code(), Some(130));
+}

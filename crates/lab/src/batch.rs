@@ -1,0 +1,139 @@
+//! Eight flights side by side: a flight that ends makes room for the next one.
+//!
+//! Flights of one structure share the registers. Each lane has its own beginning, end, step and numbers;
+//! what it computes has the bits of a single flight, whoever its neighbours are.
+
+use std::collections::VecDeque;
+
+use stormpetrel_control::lanes::Lanes;
+use stormpetrel_control::real::{Mask as _, Real};
+use stormpetrel_control::record::RecordExt;
+use stormpetrel_plant::dispatch::{Width, Work};
+use stormpetrel_plant::flight::Flight;
+
+use crate::fly::{LANES, Outcome, failure, setting};
+use crate::metric::{Distribution, Setting, Sums, metrics};
+use crate::scenario::Scenario;
+
+type Wide = Lanes<f64, LANES>;
+
+/// Flies scenarios of one structure; outcomes in their order. Without `attitude` only the metrics of
+/// the position are taken.
+pub fn fly_alike(scenarios: &[&Scenario], width: Width, attitude: bool) -> Vec<Outcome> {
+    let mut outcomes = vec![None; scenarios.len()];
+    let mut waiting: VecDeque<usize> = (0..scenarios.len()).collect();
+    let Some(first) = scenarios.first() else { return Vec::new() };
+    let mut batch = Batch::new(first, attitude && first.has_attitude());
+    loop {
+        batch.board(scenarios, &mut waiting);
+        if batch.seats.iter().all(Option::is_none) {
+            break;
+        }
+        batch = width.run(Segment(batch));
+        for (row, outcome) in batch.leave() {
+            outcomes[row] = Some(outcome);
+        }
+    }
+    outcomes.into_iter().flatten().collect()
+}
+
+/// Who flies in a lane.
+struct Seat {
+    /// Position in the list.
+    row: usize,
+    /// Tick of the batch at which the flight is over.
+    end: u64,
+    distribution: Distribution,
+}
+
+struct Batch {
+    flight: Flight<Wide>,
+    sums: Sums<Wide>,
+    setting: Setting<Wide>,
+    /// 1 where a lane is taken.
+    taken: Wide,
+    seats: [Option<Seat>; LANES],
+}
+
+impl Batch {
+    /// Empty lanes with the structure of this flight.
+    fn new(scenario: &Scenario, attitude: bool) -> Self {
+        let empty = Flight { alive: 0.0, ..scenario.flight() };
+        Self {
+            flight: RecordExt::<f64>::gather([&empty; LANES]),
+            sums: Sums::new(),
+            setting: Setting { has_attitude: attitude, ..setting(scenario) },
+            taken: Wide::zero(),
+            seats: [const { None }; LANES],
+        }
+    }
+
+    /// Fills the empty lanes.
+    fn board(&mut self, scenarios: &[&Scenario], waiting: &mut VecDeque<usize>) {
+        for lane in 0..LANES {
+            if self.seats[lane].is_some() {
+                continue;
+            }
+            let Some(row) = waiting.pop_front() else { return };
+            let (scenario, now) = (scenarios[row], self.flight.tick);
+            let flight = Flight { begin: now as f64, ..scenario.flight() };
+            flight.put(&mut self.flight, lane);
+            Sums::<f64>::new().put(&mut self.sums, lane);
+            let Setting { dt, late, gravity, has_attitude } = setting(scenario);
+            self.setting.dt.set_lane(lane, dt);
+            self.setting.late.set_lane(lane, late);
+            self.setting.gravity.set_lane(lane, gravity);
+            self.taken.set_lane(lane, 1.0);
+            let distribution = Distribution::new(has_attitude && self.setting.has_attitude);
+            self.seats[lane] = Some(Seat { row, end: now + scenario.ticks(), distribution });
+        }
+    }
+
+    /// Empties the lanes whose flight is over.
+    fn leave(&mut self) -> Vec<(usize, Outcome)> {
+        let mut left = Vec::new();
+        for lane in 0..LANES {
+            let over =
+                |seat: &Seat| self.flight.alive.lane(lane) == 0.0 || seat.end <= self.flight.tick;
+            let Some(seat) = self.seats[lane].take_if(|seat| over(seat)) else { continue };
+            self.taken.set_lane(lane, 0.0);
+            self.flight.alive.set_lane(lane, 0.0);
+            let flight: Flight<f64> = RecordExt::pick(&self.flight, lane);
+            let outcome = Outcome {
+                metrics: metrics(&RecordExt::pick(&self.sums, lane), &seat.distribution),
+                failure: failure(flight.cause, flight.flown, flight.control_step),
+            };
+            left.push((seat.row, outcome));
+        }
+        left
+    }
+}
+
+/// The closed loop until the first flight of the batch is over, to be compiled for each width.
+struct Segment(Batch);
+
+impl Work for Segment {
+    type Output = Batch;
+
+    #[inline(always)]
+    fn run(self) -> Batch {
+        let Batch { mut flight, mut sums, setting, taken, mut seats } = self.0;
+        let mut until = u64::MAX;
+        for seat in seats.iter().flatten() {
+            if seat.end < until {
+                until = seat.end;
+            }
+        }
+        while flight.tick < until && flight.alive.eq(taken).all() {
+            let tick = flight.decide();
+            let errors = sums.push(&tick, &setting, flight.alive);
+            for lane in 0..LANES {
+                if let Some(seat) = &mut seats[lane] {
+                    seat.distribution.push(&errors.pick(lane));
+                }
+            }
+            flight.advance(&tick);
+        }
+        Batch { flight, sums, setting, taken, seats }
+    }
+}

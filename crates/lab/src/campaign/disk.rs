@@ -1,0 +1,84 @@
+//! The file operations of a campaign, behind a trait so that every one of them can be made to fail.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// What a campaign asks of the file system.
+pub trait Disk: Sync {
+    /// A new empty file, replacing one of the same name.
+    ///
+    /// # Errors
+    /// Those of the system.
+    fn create(&self, path: &Path) -> io::Result<Box<dyn Sink>>;
+    /// The file opened for writing at its end, cut to `length` bytes before.
+    ///
+    /// # Errors
+    /// Those of the system.
+    fn append(&self, path: &Path, length: u64) -> io::Result<Box<dyn Sink>>;
+    /// Gives a file another name, replacing one of that name in one stroke.
+    ///
+    /// # Errors
+    /// Those of the system.
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
+}
+
+/// A file open for writing.
+pub trait Sink: Write + Send {
+    /// Returns once everything written is on the medium.
+    ///
+    /// # Errors
+    /// Those of the system.
+    fn sync(&mut self) -> io::Result<()>;
+}
+
+/// The file system of this machine.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Native;
+
+impl Disk for Native {
+    fn create(&self, path: &Path) -> io::Result<Box<dyn Sink>> {
+        Ok(Box::new(File::create(path)?))
+    }
+    fn append(&self, path: &Path, length: u64) -> io::Result<Box<dyn Sink>> {
+        let file = OpenOptions::new().append(true).create(true).open(path)?;
+        file.set_len(length)?;
+        Ok(Box::new(file))
+    }
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        std::fs::rename(from, to)?;
+        // The new name itself must reach the medium, where the system lets folders be synchronised.
+        #[cfg(unix)]
+        if let Some(folder) = to.parent() {
+            File::open(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })?
+                .sync_all()?;
+        }
+        Ok(())
+    }
+}
+
+impl Sink for File {
+    fn sync(&mut self) -> io::Result<()> {
+        self.sync_all()
+    }
+}
+
+/// Writes a file beside its place and renames it: it is never seen half-written.
+///
+/// # Errors
+/// Those of the system, and what `fill` returns.
+pub fn replace(
+    disk: &dyn Disk,
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".part");
+    let beside = Path::new(&beside);
+    let mut file = disk.create(beside)?;
+    fill(file.as_mut())?;
+    file.flush()?;
+    file.sync()?;
+    drop(file);
+    disk.rename(beside, path)
+}

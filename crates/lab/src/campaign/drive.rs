@@ -1,0 +1,319 @@
+//! Flying a campaign: threads take chunks of the plan, the journal keeps what is done, and at the end
+//! the files are written in the order of the plan.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::time::{Duration, Instant};
+
+use super::disk::Disk;
+use super::journal::{CHUNK, Entry, Index, Journal, Owner, Tally};
+use super::plan::{Campaign, Metrics};
+use super::result::Columns;
+use super::summary::wilson;
+use crate::fly::{Outcome, fly_batch, fly_batch_position};
+use crate::scenario::Scenario;
+
+/// How a campaign is flown.
+#[derive(Clone, Copy, Debug)]
+pub struct Drive<'a> {
+    /// What is flown.
+    pub campaign: &'a Campaign,
+    /// Folder of the campaign.
+    pub folder: &'a Path,
+    /// File operations.
+    pub disk: &'a dyn Disk,
+    /// Number of threads.
+    pub threads: usize,
+    /// Which part of the plan, from zero, of how many.
+    pub shard: (u64, u64),
+    /// Width of the success interval that is narrow enough.
+    pub until: Option<f64>,
+    /// Set from outside to end after the chunks in hand.
+    pub stop: &'a AtomicBool,
+}
+
+impl std::fmt::Debug for dyn Disk + '_ {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Disk")
+    }
+}
+
+/// How far it has come.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Flights to fly, in this shard.
+    pub flights: u64,
+    /// Flights done, those of earlier runs included.
+    pub done: Tally,
+    /// Flights done by this run.
+    pub flown_now: u64,
+}
+
+/// How it ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// All flights that were asked for are in the journal: so many, from the first on.
+    Complete(u64),
+    /// Stopped from outside; `resume` goes on.
+    Stopped,
+}
+
+/// The journal of a campaign's folder.
+pub const JOURNAL: &str = "journal.bin";
+
+impl Drive<'_> {
+    /// What the journal of this part must say of itself.
+    pub fn owner(&self) -> Owner {
+        Owner {
+            identity: identity(self.campaign),
+            shard: self.shard.0,
+            shards: self.shard.1,
+            metrics: self.campaign.columns().metrics.len() as u64,
+        }
+    }
+
+    /// Flies what the journal does not have yet; `watch` is told of every chunk.
+    ///
+    /// # Errors
+    /// Where the journal belongs to another campaign, is damaged or cannot be written, or a flight cannot
+    /// be built or breaks the program.
+    pub fn fly(&self, watch: &mut dyn FnMut(&Progress)) -> io::Result<End> {
+        let path = self.folder.join(JOURNAL);
+        let index = Index::read(&path)?;
+        if index.as_ref().is_some_and(|index| index.owner() != self.owner()) {
+            return Err(io::Error::other(format!(
+                "{}: belongs to another campaign, or to another part of it",
+                path.display()
+            )));
+        }
+        let mut journal = Journal::open(self.disk, &path, &self.owner(), index.as_ref())?;
+        let tallies = index.as_ref().map(|index| index.tallies.clone()).unwrap_or_default();
+        let mut count = Count::new(self, tallies);
+        let has = |chunk: &u64| index.as_ref().is_some_and(|index| index.has(*chunk));
+        let waiting: Vec<u64> = self.chunks().filter(|chunk| !has(chunk)).collect();
+        let enough = AtomicBool::new(count.enough());
+        watch(&count.progress());
+        let next = AtomicUsize::new(0);
+        std::thread::scope(|scope| {
+            let (send, receive) = sync_channel(2 * self.threads);
+            for _ in 0..self.threads {
+                let (send, next, waiting, enough) = (send.clone(), &next, &waiting, &enough);
+                scope.spawn(move || {
+                    while !self.stop.load(Ordering::Relaxed) && !enough.load(Ordering::Relaxed) {
+                        let Some(chunk) = waiting.get(next.fetch_add(1, Ordering::Relaxed)) else {
+                            break;
+                        };
+                        if send.send((*chunk, self.fly_chunk(*chunk))).is_err() {
+                            break;
+                        }
+                    }
+                });
+            }
+            drop(send);
+            let kept = keep(&receive, &mut journal, &mut count, &enough, watch);
+            if kept.is_err() {
+                // Lets the threads end: nothing more can be kept.
+                enough.store(true, Ordering::Relaxed);
+            }
+            drop(receive);
+            kept
+        })?;
+        Ok(count.end())
+    }
+
+    /// The chunks of this part of the plan.
+    fn chunks(&self) -> impl Iterator<Item = u64> {
+        let (shard, shards) = self.shard;
+        (0..self.campaign.flights().div_ceil(CHUNK)).filter(move |chunk| chunk % shards == shard)
+    }
+
+    /// Flies a chunk. A flight that breaks the program is told by its numbers.
+    fn fly_chunk(&self, chunk: u64) -> io::Result<Vec<Entry>> {
+        let flown =
+            catch_unwind(AssertUnwindSafe(|| fly_rows(self.campaign, rows(self.campaign, chunk))));
+        flown.unwrap_or_else(|_| {
+            let rows = rows(self.campaign, chunk);
+            Err(io::Error::other(format!(
+                "a flight from {} to {} broke the program: please report the campaign file and these numbers",
+                rows.start,
+                rows.end - 1
+            )))
+        })
+    }
+}
+
+/// The flights of a chunk.
+pub fn rows(campaign: &Campaign, chunk: u64) -> std::ops::Range<u64> {
+    let begin = chunk * CHUNK;
+    let end = begin + CHUNK;
+    begin..if end < campaign.flights() { end } else { campaign.flights() }
+}
+
+/// A hash of everything that the results depend on (FNV-1a).
+pub fn identity(campaign: &Campaign) -> u64 {
+    campaign.identity().to_string().bytes().fold(0xCBF2_9CE4_8422_2325, |state, byte| {
+        (state ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
+    })
+}
+
+/// Flies these flights of the plan.
+///
+/// # Errors
+/// Where the inputs of one make no flight.
+pub fn fly_rows(campaign: &Campaign, rows: std::ops::Range<u64>) -> io::Result<Vec<Entry>> {
+    let mut scenarios: Vec<Scenario> = Vec::new();
+    for index in rows {
+        let (inputs, seed) = (campaign.inputs(index), campaign.seed(index));
+        let flight = campaign.flight(&inputs, seed).map_err(|faults| {
+            io::Error::other(format!("flight {index} of the plan cannot be flown:\n{faults}"))
+        })?;
+        scenarios.push(flight);
+    }
+    let outcomes = match campaign.choices.metrics {
+        Metrics::All => fly_batch(&scenarios),
+        Metrics::Position => fly_batch_position(&scenarios),
+    };
+    let columns = campaign.columns();
+    Ok(outcomes.iter().map(|outcome| entry(outcome, &columns)).collect())
+}
+
+fn entry(outcome: &Outcome, columns: &Columns) -> Entry {
+    let value = |name: &String| outcome.get(name).unwrap_or(f64::NAN);
+    Entry { failure: outcome.failure, metrics: columns.metrics.iter().map(value).collect() }
+}
+
+type Flown = (u64, io::Result<Vec<Entry>>);
+
+/// Takes chunks as they come and keeps them.
+fn keep(
+    receive: &Receiver<Flown>,
+    journal: &mut Journal,
+    count: &mut Count,
+    enough: &AtomicBool,
+    watch: &mut dyn FnMut(&Progress),
+) -> io::Result<()> {
+    for (chunk, entries) in receive {
+        let entries = entries?;
+        journal.append(chunk, &entries)?;
+        let good = entries.iter().filter(|entry| entry.failure.is_none()).count() as u64;
+        count.add(chunk, Tally { flown: entries.len() as u64, good });
+        if count.enough() {
+            enough.store(true, Ordering::Relaxed);
+        }
+        watch(&count.progress());
+    }
+    Ok(())
+}
+
+/// Counts what is done, and how far the plan is done without a gap: only that may decide when there is
+/// enough, or the answer would depend on which thread was faster.
+struct Count {
+    flights: u64,
+    until: Option<f64>,
+    tallies: BTreeMap<u64, Tally>,
+    done: Tally,
+    flown_now: u64,
+    /// Chunks done without a gap, and what they came to.
+    prefix: (u64, Tally),
+    /// Flights that are enough.
+    answer: Option<u64>,
+}
+
+impl Count {
+    fn new(drive: &Drive<'_>, tallies: BTreeMap<u64, Tally>) -> Self {
+        let flights = drive.chunks().map(|chunk| {
+            let rows = rows(drive.campaign, chunk);
+            rows.end - rows.start
+        });
+        let mut count = Self {
+            flights: flights.sum(),
+            until: drive.until,
+            tallies: BTreeMap::new(),
+            done: Tally::default(),
+            flown_now: 0,
+            prefix: (0, Tally::default()),
+            answer: None,
+        };
+        for (chunk, tally) in tallies {
+            count.add(chunk, tally);
+        }
+        count.flown_now = 0;
+        count
+    }
+
+    fn add(&mut self, chunk: u64, tally: Tally) {
+        self.done.flown += tally.flown;
+        self.done.good += tally.good;
+        self.flown_now += tally.flown;
+        self.tallies.insert(chunk, tally);
+        while let Some(tally) = self.tallies.remove(&self.prefix.0) {
+            self.prefix.0 += 1;
+            self.prefix.1.flown += tally.flown;
+            self.prefix.1.good += tally.good;
+            let Some(width) = self.until.filter(|_| self.answer.is_none()) else { continue };
+            let interval = wilson(self.prefix.1.good, self.prefix.1.flown);
+            if interval.high - interval.low <= width {
+                self.answer = Some(self.prefix.1.flown);
+            }
+        }
+    }
+
+    fn enough(&self) -> bool {
+        self.answer.is_some()
+    }
+
+    fn progress(&self) -> Progress {
+        Progress { flights: self.flights, done: self.done, flown_now: self.flown_now }
+    }
+
+    fn end(&self) -> End {
+        match self.answer {
+            Some(flights) => End::Complete(flights),
+            None if self.done.flown == self.flights => End::Complete(self.flights),
+            None => End::Stopped,
+        }
+    }
+}
+
+/// What a campaign will take.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimate {
+    /// Wall time on so many threads.
+    pub time: Duration,
+    /// Bytes of the journal, and about as much for the results.
+    pub bytes: u64,
+}
+
+/// Flies eight flights of the plan for at most 2,000 ticks and reckons the whole from them.
+///
+/// # Errors
+/// Where the first flights cannot be built.
+pub fn estimate(campaign: &Campaign, flights: u64, threads: usize) -> io::Result<Estimate> {
+    const TICKS: f64 = 2000.0;
+    let mut scenarios = Vec::new();
+    for index in 0..if flights < 8 { flights } else { 8 } {
+        let flight = campaign.flight(&campaign.inputs(index), campaign.seed(index));
+        let mut scenario = flight.map_err(|faults| io::Error::other(faults.to_string()))?;
+        let longest = TICKS * scenario.run.control_step;
+        if scenario.run.duration > longest {
+            scenario.run.duration = longest;
+        }
+        scenarios.push(scenario);
+    }
+    let begin = Instant::now();
+    let ticks: u64 = scenarios.iter().map(Scenario::ticks).sum();
+    fly_batch(&scenarios);
+    let per_tick = begin.elapsed().as_secs_f64() / if ticks > 0 { ticks as f64 } else { 1.0 };
+    let whole = flights as f64 * campaign.scenario.ticks() as f64 * per_tick / threads as f64;
+    // Ten thousand years are enough to say no.
+    let seconds = if whole < 3e11 { whole } else { 3e11 };
+    let metrics = campaign.columns().metrics.len() as u64;
+    Ok(Estimate {
+        time: Duration::from_secs_f64(seconds),
+        bytes: super::journal::size(flights, metrics),
+    })
+}

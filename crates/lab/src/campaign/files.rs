@@ -1,0 +1,209 @@
+//! The files of a campaign, each written beside its place and renamed.
+
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use serde_json::{Value as Json, json};
+
+use super::disk::{Disk, Sink, replace};
+use super::drive::rows;
+use super::journal::{CHUNK, Index, row};
+use super::parquet::Writer;
+use super::plan::Campaign;
+use super::report::{Story, html};
+use super::result::Row;
+use super::summary::Summary;
+use crate::output::{REVISION, VERSION};
+
+/// What the campaign is: written first, compared before it is resumed.
+pub const CAMPAIGN: &str = "campaign.json";
+/// Index, seed and inputs of every flight, written before the first one.
+pub const PLAN: &str = "plan.csv";
+/// One row for each flight.
+pub const RESULTS: &str = "results.parquet";
+/// Numbers that sum up all flights.
+pub const SUMMARY: &str = "summary.json";
+/// The page for a reader.
+pub const REPORT: &str = "report.html";
+/// Worst flights that are kept for the report.
+pub const WORST: usize = 10;
+
+/// `campaign.json`.
+pub fn about(campaign: &Campaign) -> Json {
+    json!({
+        "program": "stormpetrel",
+        "version": VERSION,
+        "revision": REVISION,
+        "campaign": campaign.identity(),
+    })
+}
+
+/// Writes [`CAMPAIGN`] and [`PLAN`].
+///
+/// # Errors
+/// Where they cannot be written.
+pub fn begin(disk: &dyn Disk, folder: &Path, campaign: &Campaign) -> io::Result<()> {
+    replace(disk, &folder.join(PLAN), |file| {
+        let mut out = BufWriter::with_capacity(1 << 16, Pass(file));
+        let names: Vec<String> = campaign.columns().inputs.iter().map(|n| cell(n)).collect();
+        writeln!(out, "index,seed,{}", names.join(","))?;
+        for index in 0..campaign.flights() {
+            let inputs = campaign.inputs(index);
+            let cells: Vec<String> = inputs.iter().map(|input| cell(&input.to_string())).collect();
+            writeln!(out, "{index},{},{}", campaign.seed(index), cells.join(","))?;
+        }
+        out.flush()
+    })?;
+    let text = format!("{:#}\n", about(campaign));
+    // Last: a folder with this file has its plan.
+    replace(disk, &folder.join(CAMPAIGN), |file| file.write_all(text.as_bytes()))
+}
+
+/// A cell of a CSV file, in quotes where it needs them.
+fn cell(text: &str) -> String {
+    if text.contains([',', '"', '\n']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+/// Whether the folder holds this very campaign; `None` where it holds none.
+///
+/// # Errors
+/// Where its description cannot be read.
+pub fn holds(folder: &Path, campaign: &Campaign) -> io::Result<Option<bool>> {
+    let text = match fs::read_to_string(folder.join(CAMPAIGN)) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    let found: Json = serde_json::from_str(&text).map_err(io::Error::other)?;
+    Ok(Some(found["campaign"] == campaign.identity()))
+}
+
+/// Shows the first `flights` rows of the plan in order, from the journals of its parts.
+///
+/// # Errors
+/// Where a journal cannot be read or a flight is missing.
+pub fn each_row(
+    campaign: &Campaign,
+    parts: &[Index],
+    flights: u64,
+    see: &mut dyn FnMut(&Row) -> io::Result<()>,
+) -> io::Result<()> {
+    for chunk in 0..flights.div_ceil(CHUNK) {
+        let mut found = None;
+        for part in parts {
+            found = part.chunk(chunk)?;
+            if found.is_some() {
+                break;
+            }
+        }
+        let rows = rows(campaign, chunk);
+        let Some(entries) = found.filter(|all| all.len() as u64 == rows.end - rows.start) else {
+            let message = format!("flights {} to {} are missing", rows.start, rows.end - 1);
+            return Err(io::Error::other(message));
+        };
+        for (index, entry) in rows.zip(entries) {
+            see(&row(index, campaign.seed(index), campaign.inputs(index), entry))?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes [`RESULTS`] and [`SUMMARY`]; returns what was learnt.
+///
+/// # Errors
+/// As [`each_row`], and where a file cannot be written.
+pub fn finish(
+    disk: &dyn Disk,
+    folder: &Path,
+    campaign: &Campaign,
+    parts: &[Index],
+    flights: u64,
+) -> io::Result<Summary> {
+    let mut summary = Summary::new(&campaign.columns(), WORST);
+    replace(disk, &folder.join(RESULTS), |file| {
+        let about = [("campaign".to_owned(), campaign.identity().to_string())];
+        let mut writer = Writer::new(Pass(file), &campaign.columns(), &about);
+        each_row(campaign, parts, flights, &mut |row| {
+            summary.push(row);
+            writer.push(row)
+        })?;
+        writer.finish().map(|_| ())
+    })?;
+    let text = format!("{:#}\n", summary_json(campaign, &summary));
+    replace(disk, &folder.join(SUMMARY), |file| file.write_all(text.as_bytes()))?;
+    Ok(summary)
+}
+
+/// Writes [`REPORT`]; `command` makes the command that flies a flight with these settings again, `again`
+/// is the one that flies the whole campaign.
+///
+/// # Errors
+/// Where it cannot be written.
+pub fn report(
+    disk: &dyn Disk,
+    folder: &Path,
+    campaign: &Campaign,
+    summary: &Summary,
+    command: &dyn Fn(&[String]) -> String,
+    again: &str,
+) -> io::Result<()> {
+    let refly = |row: &Row| (row.clone(), command(&campaign.sets(&row.inputs, row.seed)));
+    let worst: Vec<(Row, String)> = summary.worst().iter().map(refly).collect();
+    let page = html(&Story {
+        title: &campaign.scenario.title,
+        about: &campaign.scenario.about,
+        scenario: &campaign.scenario.name,
+        inputs: &campaign.describe(),
+        units: &campaign.units(),
+        summary,
+        worst: &worst,
+        command: again,
+    });
+    replace(disk, &folder.join(REPORT), |file| file.write_all(page.as_bytes()))
+}
+
+/// `summary.json`.
+pub fn summary_json(campaign: &Campaign, summary: &Summary) -> Json {
+    let (share, interval) = summary.success();
+    let failures: serde_json::Map<String, Json> = summary
+        .failures()
+        .into_iter()
+        .map(|(cause, count)| (cause.describe().to_owned(), json!(count)))
+        .collect();
+    let correlations: Vec<Json> = summary
+        .correlations()
+        .into_iter()
+        .map(|c| json!({ "input": c.input, "with": c.with, "rank": c.rank, "flights": c.flights }))
+        .collect();
+    let worst: Vec<Json> = summary
+        .worst()
+        .iter()
+        .map(|row| json!({ "index": row.index, "set": campaign.sets(&row.inputs, row.seed) }))
+        .collect();
+    json!({
+        "scenario": campaign.scenario.name,
+        "flights": summary.flights(),
+        "flown": summary.flown(),
+        "success": { "share": share, "low": interval.low, "high": interval.high },
+        "failures": failures,
+        "rank_correlations": correlations,
+        "worst": worst,
+    })
+}
+
+/// A file lent to a writer that wants to own one.
+struct Pass<'a>(&'a mut dyn Sink);
+
+impl Write for Pass<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write(bytes)
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}

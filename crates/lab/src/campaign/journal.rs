@@ -1,0 +1,283 @@
+//! The journal of a campaign: what has been flown, appended chunk by chunk, each with a checksum.
+//!
+//!   header: mark, identity of the campaign, shard, shards, bytes a flight, checksum
+//!   record: chunk number, length, checksum of both; the flights; checksum of the flights
+//!
+//! All numbers little end first, checksums CRC-32. A record that ends with the file was being written
+//! when the program died: it is cut off and flown again. Anything else that does not add up is damage,
+//! and is said.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+
+use super::disk::{Disk, Sink};
+use super::result::Row;
+use crate::fly::Failure;
+use stormpetrel_plant::flight::Cause;
+
+/// Flights in a record.
+pub const CHUNK: u64 = 64;
+
+const MARK: [u8; 16] = *b"stormpetrel\0jr1\n";
+const HEADER: usize = 16 + 8 + 8 + 8 + 8 + 4;
+const HEAD: usize = 8 + 4 + 4;
+
+/// What a journal belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Owner {
+    /// Hash of everything that the results depend on.
+    pub identity: u64,
+    /// Which part of the plan, from zero.
+    pub shard: u64,
+    /// Number of parts.
+    pub shards: u64,
+    /// Metrics of one flight.
+    pub metrics: u64,
+}
+
+impl Owner {
+    fn header(&self) -> [u8; HEADER] {
+        let mut bytes = [0; HEADER];
+        bytes[..16].copy_from_slice(&MARK);
+        for (slot, word) in bytes[16..48].chunks_exact_mut(8).zip([
+            self.identity,
+            self.shard,
+            self.shards,
+            self.metrics,
+        ]) {
+            slot.copy_from_slice(&word.to_le_bytes());
+        }
+        let sum = crc32fast::hash(&bytes[..48]);
+        bytes[48..].copy_from_slice(&sum.to_le_bytes());
+        bytes
+    }
+
+    fn read(bytes: &[u8; HEADER]) -> Option<Self> {
+        let word = |at: usize| u64_at(bytes, at);
+        let owner =
+            Self { identity: word(16), shard: word(24), shards: word(32), metrics: word(40) };
+        (owner.header() == *bytes).then_some(owner)
+    }
+}
+
+fn u64_at(bytes: &[u8], at: usize) -> u64 {
+    let mut word = [0; 8];
+    word.copy_from_slice(&bytes[at..at + 8]);
+    u64::from_le_bytes(word)
+}
+
+fn u32_at(bytes: &[u8], at: usize) -> u32 {
+    let mut word = [0; 4];
+    word.copy_from_slice(&bytes[at..at + 4]);
+    u32::from_le_bytes(word)
+}
+
+/// What one chunk came to, as far as its success goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Flights.
+    pub flown: u64,
+    /// Those that did not fail.
+    pub good: u64,
+}
+
+/// Outcome and metrics of one flight; index, seed and inputs follow from the plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Present where the flight failed.
+    pub failure: Option<Failure>,
+    /// Metrics in the order of the columns; NaN where there is none.
+    pub metrics: Vec<f64>,
+}
+
+const CAUSES: [Cause; 4] = [Cause::PositionError, Cause::Tilt, Cause::Ground, Cause::NonFinite];
+
+fn encode(entries: &[Entry]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for Entry { failure, metrics } in entries {
+        let code = failure.and_then(|f| CAUSES.iter().position(|cause| *cause == f.cause));
+        let code = code.and_then(|at| u8::try_from(at + 1).ok()).unwrap_or(0);
+        bytes.push(code);
+        bytes.extend(failure.map_or(0.0, |f| f.time).to_le_bytes());
+        for x in metrics {
+            bytes.extend(x.to_le_bytes());
+        }
+    }
+    bytes
+}
+
+fn decode(bytes: &[u8], metrics: usize) -> Vec<Entry> {
+    let float = |at: &[u8], i: usize| f64::from_bits(u64_at(at, i));
+    let entry = |bytes: &[u8]| Entry {
+        failure: CAUSES
+            .get(usize::from(bytes[0]).wrapping_sub(1))
+            .map(|cause| Failure { time: float(bytes, 1), cause: *cause }),
+        metrics: (0..metrics).map(|i| float(bytes, 9 + 8 * i)).collect(),
+    };
+    bytes.chunks_exact(9 + 8 * metrics).map(entry).collect()
+}
+
+/// Bytes that the journal takes for so many flights.
+pub fn size(flights: u64, metrics: u64) -> u64 {
+    let records = flights.div_ceil(CHUNK);
+    HEADER as u64 + records * (HEAD as u64 + 4) + flights * (9 + 8 * metrics)
+}
+
+/// Where the chunks of a journal stand.
+#[derive(Debug)]
+pub struct Index {
+    path: PathBuf,
+    owner: Owner,
+    places: BTreeMap<u64, (u64, usize)>,
+    /// What each chunk came to.
+    pub tallies: BTreeMap<u64, Tally>,
+    end: u64,
+}
+
+/// A message about a journal that cannot be used.
+fn damaged(path: &Path, at: u64, what: &str) -> io::Error {
+    io::Error::other(format!(
+        "{}: damaged at byte {at}: {what}; what it holds cannot be trusted. Restore it from a copy, or remove the folder and fly again",
+        path.display()
+    ))
+}
+
+impl Index {
+    /// Reads the journal at `path`, which may not exist yet.
+    ///
+    /// # Errors
+    /// Where it cannot be read or is damaged.
+    pub fn read(path: &Path) -> io::Result<Option<Self>> {
+        let file = match File::open(path) {
+            Ok(file) => file,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(error),
+        };
+        let length = file.metadata()?.len();
+        let mut file = BufReader::with_capacity(1 << 18, file);
+        let mut header = [0; HEADER];
+        if length < HEADER as u64 {
+            // Died while beginning: a prefix of a header is nothing flown, other bytes are not ours.
+            let mut bytes = Vec::new();
+            file.read_to_end(&mut bytes)?;
+            let ours = bytes.iter().zip(MARK).all(|(a, b)| *a == b);
+            return if ours { Ok(None) } else { Err(damaged(path, 0, "not a journal")) };
+        }
+        file.read_exact(&mut header)?;
+        let Some(owner) = Owner::read(&header) else {
+            return Err(damaged(path, 0, "the header does not have its checksum"));
+        };
+        let (places, tallies) = (BTreeMap::new(), BTreeMap::new());
+        let mut index = Self { path: path.to_owned(), owner, places, tallies, end: HEADER as u64 };
+        while index.read_record(&mut file, length)? {}
+        Ok(Some(index))
+    }
+
+    /// Reads one record; `false` at the end or where the last one was cut.
+    fn read_record(&mut self, file: &mut impl Read, length: u64) -> io::Result<bool> {
+        let at = self.end;
+        if length - at < HEAD as u64 {
+            return Ok(false);
+        }
+        let mut head = [0; HEAD];
+        file.read_exact(&mut head)?;
+        if crc32fast::hash(&head[..12]) != u32_at(&head, 12) {
+            return Err(damaged(&self.path, at, "a record's head does not have its checksum"));
+        }
+        let (chunk, size) = (u64_at(&head, 0), u32_at(&head, 8) as usize);
+        let begin = at + HEAD as u64;
+        if length - begin < size as u64 + 4 {
+            return Ok(false);
+        }
+        let mut payload = vec![0; size + 4];
+        file.read_exact(&mut payload)?;
+        if crc32fast::hash(&payload[..size]) != u32_at(&payload, size) {
+            return Err(damaged(&self.path, begin, "flights do not have their checksum"));
+        }
+        let metrics = usize::try_from(self.owner.metrics).unwrap_or(usize::MAX);
+        let entries = decode(&payload[..size], metrics);
+        let good = entries.iter().filter(|entry| entry.failure.is_none()).count() as u64;
+        if self.places.insert(chunk, (begin, size)).is_some() {
+            return Err(damaged(&self.path, at, "a chunk stands twice"));
+        }
+        self.tallies.insert(chunk, Tally { flown: entries.len() as u64, good });
+        self.end = begin + size as u64 + 4;
+        Ok(true)
+    }
+
+    /// What the journal belongs to.
+    pub fn owner(&self) -> Owner {
+        self.owner
+    }
+
+    /// Whether the chunk is in it.
+    pub fn has(&self, chunk: u64) -> bool {
+        self.places.contains_key(&chunk)
+    }
+
+    /// The flights of a chunk; `None` where it is not in the journal.
+    ///
+    /// # Errors
+    /// Where it cannot be read any more, or has changed since.
+    pub fn chunk(&self, chunk: u64) -> io::Result<Option<Vec<Entry>>> {
+        let Some((begin, size)) = self.places.get(&chunk) else { return Ok(None) };
+        let mut file = File::open(&self.path)?;
+        file.seek(SeekFrom::Start(*begin))?;
+        let mut payload = vec![0; size + 4];
+        file.read_exact(&mut payload)?;
+        if crc32fast::hash(&payload[..*size]) != u32_at(&payload, *size) {
+            return Err(damaged(&self.path, *begin, "flights do not have their checksum"));
+        }
+        let metrics = usize::try_from(self.owner.metrics).unwrap_or(usize::MAX);
+        Ok(Some(decode(&payload[..*size], metrics)))
+    }
+}
+
+/// A journal open for writing.
+pub struct Journal {
+    file: Box<dyn Sink>,
+}
+
+impl Journal {
+    /// Goes on behind what `index` has, or begins a new journal.
+    ///
+    /// # Errors
+    /// Where the file cannot be written.
+    pub fn open(
+        disk: &dyn Disk,
+        path: &Path,
+        owner: &Owner,
+        index: Option<&Index>,
+    ) -> io::Result<Self> {
+        let Some(index) = index else {
+            let mut file = disk.create(path)?;
+            file.write_all(&owner.header())?;
+            file.sync()?;
+            return Ok(Self { file });
+        };
+        Ok(Self { file: disk.append(path, index.end)? })
+    }
+
+    /// Appends a chunk and waits until it is on the medium.
+    ///
+    /// # Errors
+    /// Where it cannot be written; the file may then end in half a record.
+    pub fn append(&mut self, chunk: u64, entries: &[Entry]) -> io::Result<()> {
+        let payload = encode(entries);
+        let mut bytes = Vec::with_capacity(HEAD + payload.len() + 4);
+        bytes.extend(chunk.to_le_bytes());
+        bytes.extend(u32::try_from(payload.len()).map_err(io::Error::other)?.to_le_bytes());
+        bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+        bytes.extend(&payload);
+        bytes.extend(crc32fast::hash(&payload).to_le_bytes());
+        self.file.write_all(&bytes)?;
+        self.file.sync()
+    }
+}
+
+/// The row of a flight: what the journal has, and what follows from the plan.
+pub fn row(index: u64, seed: u64, inputs: Vec<super::result::Input>, entry: Entry) -> Row {
+    Row { index, seed, inputs, failure: entry.failure, metrics: entry.metrics }
+}

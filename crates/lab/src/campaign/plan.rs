@@ -1,0 +1,324 @@
+//! The plan of a campaign: which flights, with which inputs.
+//!
+//! Inputs and seed of a flight follow from the master seed and the flight's index alone, so any part
+//! of a plan can be flown anywhere, in any order.
+
+use std::path::Path;
+
+use serde_json::{Value as Json, json};
+use stormpetrel_control::options::Options as _;
+use stormpetrel_control::record::{Meta, Path as Name, Record as _};
+use stormpetrel_control::{choice, options, record};
+
+use super::random::{key, named, permuted, unit};
+use super::replay;
+use super::result::{Columns, Input};
+use super::sweep::{self, Sweep};
+use super::units;
+use crate::metric;
+use crate::scenario::document::{Node, Value};
+use crate::scenario::fault::{Fault, Faults};
+use crate::scenario::read::{Reader, wrong_type};
+use crate::scenario::{Base, Scenario};
+
+record! {
+    /// The block `campaign`.
+    pub struct Size {
+        /// Number of flights; 0 means one for each combination of grids and lists.
+        flights: T [count] = 0.0, in 0.0 => 1e8;
+    }
+}
+
+choice! {
+    /// How the inputs of different flights hang together.
+    pub enum Sampling {
+        /// Each input meets every one of `flights` equal shares of its distribution once.
+        "latin-hypercube" => LatinHypercube,
+        /// Every flight draws for itself.
+        "independent" => Independent,
+    }
+}
+
+choice! {
+    /// Which metrics are taken.
+    pub enum Metrics {
+        /// All.
+        "all" => All,
+        /// Those that need no attitude: a third faster.
+        "position" => Position,
+    }
+}
+
+options! {
+    /// Choices of a campaign.
+    pub struct Choices {
+        /// How the inputs of different flights hang together.
+        sampling: Sampling;
+        /// Which metrics are taken.
+        metrics: Metrics;
+    }
+}
+
+/// Reads the block `campaign`; what is wrong goes to `faults`.
+pub fn settings(node: &Node, faults: &mut Vec<Fault>) -> (Size<f64>, Choices) {
+    let (mut size, mut choices) = (Size::default(), Choices::default());
+    let Value::Table(table) = &node.value else {
+        faults.push(wrong_type(&node.place, "campaign", &node.value, ""));
+        return (size, choices);
+    };
+    let mut reader = Reader::new("campaign", table);
+    size.visit_mut(&Name::ROOT, &Meta::signal("", ""), &mut reader);
+    choices.visit(&mut reader);
+    faults.extend(reader.finish());
+    (size, choices)
+}
+
+/// A scenario and what is varied in it.
+#[derive(Clone, Debug)]
+pub struct Campaign {
+    base: Base,
+    /// The flight as the file has it.
+    pub scenario: Scenario,
+    /// What is varied.
+    pub sweeps: Vec<Sweep>,
+    /// Choices.
+    pub choices: Choices,
+    flights: u64,
+    /// Seeds and inputs read from a plan, in place of drawn ones.
+    replayed: Option<Vec<(u64, Vec<Input>)>>,
+    /// For each sweep, the paths that take its value and the number that multiplies it.
+    targets: Vec<Vec<(String, f64)>>,
+}
+
+impl Campaign {
+    /// Reads the file, and checks the extreme values of every input.
+    ///
+    /// # Errors
+    /// Everything that is wrong with file and plan.
+    pub fn load(path: &Path, sets: &[String], variant: Option<&str>) -> Result<Self, Faults> {
+        let base = Base::load(path, sets, variant)?;
+        let scenario = base.scenario(&[])?;
+        let mut faults = Vec::new();
+        let sweeps = base.block("sweep").map_or_else(Vec::new, |n| sweep::read(n, &mut faults));
+        let (size, choices) = base
+            .block("campaign")
+            .map_or_else(Default::default, |node| settings(node, &mut faults));
+        let resolved = scenario.resolved();
+        let targets = sweeps.iter().map(|sweep| targets(sweep, &resolved, &mut faults)).collect();
+        let flights = count(&sweeps, size, base.block("campaign"), &mut faults);
+        let campaign = Self { base, scenario, sweeps, choices, flights, targets, replayed: None };
+        campaign.check_extremes(&mut faults);
+        Faults(faults).check()?;
+        Ok(campaign)
+    }
+
+    /// Number of flights.
+    pub fn flights(&self) -> u64 {
+        self.flights
+    }
+
+    /// Seed of flight `index`: 52 bits, so that a scenario file can hold it.
+    pub fn seed(&self, index: u64) -> u64 {
+        self.replay_of(index).map_or_else(|| key(self.master(), index) >> 12, |(seed, _)| *seed)
+    }
+
+    fn replay_of(&self, index: u64) -> Option<&(u64, Vec<Input>)> {
+        self.replayed.as_ref()?.get(usize::try_from(index).ok()?)
+    }
+
+    /// Takes seeds and inputs from a plan, `index,seed,name,...` and one row for each flight, in place of
+    /// drawn ones. The whole plan is held in memory.
+    ///
+    /// # Errors
+    /// What is wrong with the plan, with its line.
+    pub fn replay(&mut self, plan: &str) -> Result<(), String> {
+        let rows = replay::rows(plan, &self.columns().inputs)?;
+        self.flights = rows.len() as u64;
+        self.replayed = Some(rows);
+        Ok(())
+    }
+
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number by rule
+    fn master(&self) -> u64 {
+        self.scenario.run.seed as u64
+    }
+
+    /// Inputs of flight `index`, one for each sweep.
+    pub fn inputs(&self, index: u64) -> Vec<Input> {
+        if let Some((_, inputs)) = self.replay_of(index) {
+            return inputs.clone();
+        }
+        // Grids and lists count through their combinations, the last one fastest.
+        let mut cell = index;
+        let mut inputs: Vec<Input> = Vec::with_capacity(self.sweeps.len());
+        for sweep in self.sweeps.iter().rev() {
+            inputs.push(match sweep.draw.count() {
+                Some(count) => {
+                    let input = sweep.draw.cell(cell % count);
+                    cell /= count;
+                    input
+                }
+                None => Input::Number(sweep.draw.at(self.probability(index, &sweep.name))),
+            });
+        }
+        inputs.reverse();
+        inputs
+    }
+
+    fn probability(&self, index: u64, name: &str) -> f64 {
+        let share = unit(named(key(self.master(), index), name));
+        match self.choices.sampling {
+            Sampling::Independent => share,
+            Sampling::LatinHypercube => {
+                let row = permuted(index, self.flights, named(self.master(), name));
+                (row as f64 + share) / self.flights as f64
+            }
+        }
+    }
+
+    /// The `--set` arguments that give a flight these inputs and this seed.
+    pub fn sets(&self, inputs: &[Input], seed: u64) -> Vec<String> {
+        let mut sets = vec![format!("run.seed={seed}")];
+        for (input, targets) in inputs.iter().zip(&self.targets) {
+            for (path, factor) in targets {
+                sets.push(match input {
+                    Input::Number(x) => format!("{path}={:?}", x * factor),
+                    Input::Text(text) => format!("{path}={text}"),
+                });
+            }
+        }
+        sets
+    }
+
+    /// The flight with these inputs.
+    ///
+    /// # Errors
+    /// Where they make no vehicle that can exist, such as moments of inertia that no body has.
+    pub fn flight(&self, inputs: &[Input], seed: u64) -> Result<Scenario, Faults> {
+        self.base.scenario(&self.sets(inputs, seed))
+    }
+
+    /// The columns of its results.
+    pub fn columns(&self) -> Columns {
+        let mut metrics = metric::names();
+        if self.choices.metrics == Metrics::Position || !self.scenario.has_attitude() {
+            metrics.retain(|name| !metric::of_attitude(name));
+        }
+        Columns { inputs: self.sweeps.iter().map(|sweep| sweep.name.clone()).collect(), metrics }
+    }
+
+    /// Each input with its distribution in words.
+    pub fn describe(&self) -> Vec<(String, String)> {
+        let describe = |sweep: &Sweep| {
+            let of = if sweep.relative { ", times the nominal value" } else { "" };
+            let paths = if sweep.paths == [sweep.name.clone()] {
+                String::new()
+            } else {
+                format!(" ({})", sweep.paths.join(", "))
+            };
+            (sweep.name.clone(), format!("{}{of}{paths}", sweep.draw.describe()))
+        };
+        self.sweeps.iter().map(describe).collect()
+    }
+
+    /// The unit of each input; `1` for a factor or a name.
+    pub fn units(&self) -> Vec<String> {
+        let of = |sweep: &Sweep| match sweep.paths.first() {
+            Some(path) if !sweep.relative => units::unit(&self.scenario, path).to_owned(),
+            _ => "1".to_owned(),
+        };
+        self.sweeps.iter().map(of).collect()
+    }
+
+    /// Everything that the results depend on.
+    pub fn identity(&self) -> Json {
+        let choices = match self.choices.sampling {
+            Sampling::LatinHypercube => "latin-hypercube",
+            Sampling::Independent => "independent",
+        };
+        json!({
+            "scenario": self.scenario.name,
+            "resolved": self.scenario.resolved(),
+            "flights": self.flights,
+            "sampling": choices,
+            "inputs": self.describe(),
+            "metrics": self.columns().metrics,
+            "replayed": self.replayed.as_ref().map(|rows| replay::hash(rows)),
+        })
+    }
+
+    /// Every extreme of every input must make a flight.
+    fn check_extremes(&self, faults: &mut Vec<Fault>) {
+        for (sweep, targets) in self.sweeps.iter().zip(&self.targets) {
+            for value in sweep.draw.extremes() {
+                let set = |(path, factor): &(String, f64)| match &value {
+                    Input::Number(x) => format!("{path}={:?}", x * factor),
+                    Input::Text(text) => format!("{path}={text}"),
+                };
+                let sets: Vec<String> = targets.iter().map(set).collect();
+                let Err(found) = self.base.scenario(&sets) else { continue };
+                for fault in found.0 {
+                    let message = format!("sweep `{}` at {value}: {}", sweep.name, fault.message);
+                    faults.push(Fault { message, place: Some(sweep.place.clone()), ..fault });
+                }
+            }
+        }
+    }
+}
+
+/// The numbers that a sweep sets, and what its value is multiplied by.
+fn targets(sweep: &Sweep, resolved: &Json, faults: &mut Vec<Fault>) -> Vec<(String, f64)> {
+    if !sweep.relative {
+        return sweep.paths.iter().map(|path| (path.clone(), 1.0)).collect();
+    }
+    let mut targets = Vec::new();
+    for path in &sweep.paths {
+        let mut parts = path.split('.');
+        let found = parts.try_fold(resolved, |at, part| match at {
+            Json::Array(items) => items.get(part.parse::<usize>().ok()?),
+            other => other.get(part),
+        });
+        match found {
+            Some(Json::Number(x)) => targets.push((path.clone(), x.as_f64().unwrap_or(1.0))),
+            Some(Json::Object(axes)) if axes.values().all(Json::is_number) => targets.extend(
+                axes.iter().map(|(axis, x)| (format!("{path}.{axis}"), x.as_f64().unwrap_or(1.0))),
+            ),
+            _ => {
+                let message = format!("`{path}` is no number that could be multiplied");
+                let help = "`stormpetrel explain` names the settings of each block";
+                faults.push(Fault::new(&sweep.place, message).help(help));
+            }
+        }
+    }
+    targets
+}
+
+/// How many flights: what is asked for, or every combination.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number by rule
+fn count(sweeps: &[Sweep], size: Size<f64>, place: Option<&Node>, faults: &mut Vec<Fault>) -> u64 {
+    const MOST: u64 = 100_000_000;
+    let asked = size.flights as u64;
+    let cells = sweeps.iter().filter_map(|s| s.draw.count()).fold(1, u64::saturating_mul);
+    let drawn = sweeps.iter().any(|s| s.draw.count().is_none());
+    let fault = |message: String, help: &str| {
+        match place {
+            Some(node) => Fault::new(&node.place, message),
+            None => Fault::general(message),
+        }
+        .help(help)
+    };
+    if asked == 0 && (drawn || sweeps.is_empty()) {
+        faults.push(fault(
+            "`campaign.flights` is missing".into(),
+            "say how many flights to draw: campaign = { flights = 1000 }",
+        ));
+    }
+    let flights = if asked == 0 { cells } else { asked };
+    if flights > MOST {
+        faults.push(fault(
+            format!("{flights} flights: a campaign has at most {MOST}"),
+            "use fewer values in the grids",
+        ));
+    }
+    flights
+}

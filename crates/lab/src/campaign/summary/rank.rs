@@ -1,0 +1,85 @@
+//! Rank correlation.
+
+use stormpetrel_control::real::Real;
+
+/// Spearman's rank correlation of pairs, -1 to 1; equal values share the mean of their ranks.
+/// NaN where one of the two never changes, or where there are fewer than two pairs.
+///
+/// It is the correlation coefficient of the ranks: 1 where one always rises with the other, however
+/// curved, 0 where the order of one says nothing of the other.
+///
+/// Source: C. Spearman, "The proof and measurement of association between two things", American
+/// Journal of Psychology 15 (1904), 72-101.
+pub fn spearman(pairs: &[(f64, f64)]) -> f64 {
+    let x = ranks(pairs.iter().map(|p| p.0).collect());
+    let y = ranks(pairs.iter().map(|p| p.1).collect());
+    let middle = 0.5 * (pairs.len() as f64 + 1.0);
+    let (mut xx, mut yy, mut xy) = (0.0, 0.0, 0.0);
+    for (a, b) in x.iter().map(|r| r - middle).zip(y.iter().map(|r| r - middle)) {
+        xx += a.sq();
+        yy += b.sq();
+        xy += a * b;
+    }
+    if xx > 0.0 && yy > 0.0 { xy / (xx.sqrt() * yy.sqrt()) } else { f64::NAN }
+}
+
+/// The rank of each value, from one; equal values get the mean of their ranks.
+fn ranks(values: Vec<f64>) -> Vec<f64> {
+    // Zeros of either sign are equal.
+    let mut order: Vec<(f64, usize)> = values.into_iter().map(|v| v + 0.0).zip(0..).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut ranks = vec![0.0; order.len()];
+    let mut before = 0;
+    for equal in order.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq()) {
+        let mean = before as f64 + 0.5 * (equal.len() as f64 + 1.0);
+        for (_, at) in equal {
+            ranks[*at] = mean;
+        }
+        before += equal.len();
+    }
+    ranks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(x: &[f64], y: &[f64]) -> f64 {
+        spearman(&x.iter().copied().zip(y.iter().copied()).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn equal_values_share_their_ranks() {
+        assert_eq!(ranks(vec![3.0, 1.0, 3.0, 2.0]), [3.5, 1.0, 3.5, 2.0]);
+        assert_eq!(ranks(vec![0.0, -0.0]), [1.5, 1.5]);
+    }
+
+    #[test]
+    fn order_is_all_that_counts() {
+        let x: Vec<f64> = (1..50).map(f64::from).collect();
+        let cubes: Vec<f64> = x.iter().map(|v| v * v * v).collect();
+        let falling: Vec<f64> = x.iter().map(|v| 1.0 / v).collect();
+        assert!((of(&x, &cubes) - 1.0).abs() < 1e-15);
+        assert!((of(&x, &falling) + 1.0).abs() < 1e-15);
+        assert!(of(&x, &vec![2.0; x.len()]).is_nan() && of(&[1.0], &[1.0]).is_nan());
+    }
+
+    /// Without equal values it is 1 - 6 sum d^2/(n (n^2 - 1)); here sum d^2 = 194, n = 10.
+    #[test]
+    fn closed_form_without_ties() {
+        let x = [106.0, 100.0, 86.0, 101.0, 99.0, 103.0, 97.0, 113.0, 112.0, 110.0];
+        let y = [7.0, 27.0, 2.0, 50.0, 28.0, 29.0, 20.0, 12.0, 6.0, 17.0];
+        assert!((of(&x, &y) - (1.0 - 6.0 * 194.0 / 990.0)).abs() < 1e-15);
+    }
+
+    /// `scipy.stats.spearmanr` of SciPy 1.17.1.
+    #[test]
+    fn val_scipy_with_ties() {
+        let x = [1.0, 2.0, 2.0, 3.0, 5.0, 5.0, 5.0, 8.0, 9.0, 10.0];
+        let y = [2.5, 1.0, 4.0, 4.0, 6.0, 3.0, 9.0, 9.0, 7.0, 12.0];
+        assert!((of(&x, &y) - 0.832_853_261_514_130_1).abs() < 1e-14);
+        let x = [0.1, 0.5, 0.5, 0.9, 1.3, 2.0];
+        let y = [1.0, 1.0, 1.0, 0.0, 1.0, 0.0];
+        assert!((of(&x, &y) + 0.630_126_037_812_604_5).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,269 @@
+//! `[[sweep]]` tables: which settings a campaign varies, and how.
+
+use stormpetrel_control::real::Real;
+
+use super::random::normal_quantile;
+use super::result::Input;
+use crate::scenario::document::{Entry, Node, Table, Value};
+use crate::scenario::fault::{Fault, Place};
+use crate::scenario::read::{unknown, wrong_type};
+
+/// How values are drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Draw {
+    /// Evenly between two values.
+    Uniform(f64, f64),
+    /// Evenly in the logarithm between two positive values.
+    LogUniform(f64, f64),
+    /// Around a mean with a standard deviation, cut at four of them.
+    Normal(f64, f64),
+    /// So many values evenly from one to another, both included.
+    Grid(f64, f64, u64),
+    /// These values, one after the other.
+    List(Vec<Input>),
+}
+
+/// One input of a campaign.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// Name of the column: the first path unless the file gives another.
+    pub name: String,
+    /// Dotted paths that take the value.
+    pub paths: Vec<String>,
+    /// Whether the value multiplies the file's own number.
+    pub relative: bool,
+    /// How values are drawn.
+    pub draw: Draw,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// Probability below four standard deviations.
+const FOUR_SIGMA: f64 = 3.167_124_183_311_992e-5;
+
+impl Draw {
+    /// How many values there are, where they are counted and not drawn.
+    pub fn count(&self) -> Option<u64> {
+        match self {
+            Self::Grid(_, _, count) => Some(*count),
+            Self::List(values) => Some(values.len() as u64),
+            _ => None,
+        }
+    }
+
+    /// Value `cell` of a grid or list.
+    pub fn cell(&self, cell: u64) -> Input {
+        match self {
+            Self::Grid(low, high, count) => {
+                let share = cell as f64 / (*count - 1) as f64;
+                // Both ends exactly as they are written.
+                Input::Number(low * (1.0 - share) + high * share)
+            }
+            Self::List(values) => {
+                let at = usize::try_from(cell).unwrap_or(0) % values.len();
+                values[at].clone()
+            }
+            _ => Input::Number(self.at(0.5)),
+        }
+    }
+
+    /// The value at the probability 0 < u < 1.
+    pub fn at(&self, u: f64) -> f64 {
+        match *self {
+            Self::Uniform(low, high) => low + (high - low) * u,
+            Self::LogUniform(low, high) => low * Real::exp(u * Real::ln(high / low)),
+            Self::Normal(mean, sigma) => {
+                mean + sigma * normal_quantile(FOUR_SIGMA + u * (1.0 - 2.0 * FOUR_SIGMA))
+            }
+            Self::Grid(low, ..) => low,
+            Self::List(_) => 0.0,
+        }
+    }
+
+    /// The extreme values, to be checked beforehand.
+    pub fn extremes(&self) -> Vec<Input> {
+        match self {
+            Self::Uniform(low, high) | Self::LogUniform(low, high) | Self::Grid(low, high, _) => {
+                vec![Input::Number(*low), Input::Number(*high)]
+            }
+            Self::Normal(mean, sigma) => {
+                vec![Input::Number(mean - 4.0 * sigma), Input::Number(mean + 4.0 * sigma)]
+            }
+            Self::List(values) => values.clone(),
+        }
+    }
+
+    /// As a report says it.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Uniform(low, high) => format!("uniform from {low} to {high}"),
+            Self::LogUniform(low, high) => format!("log-uniform from {low} to {high}"),
+            Self::Normal(mean, sigma) => {
+                format!("normal, mean {mean}, standard deviation {sigma}, cut at four of them")
+            }
+            Self::Grid(low, high, count) => format!("{count} values from {low} to {high}"),
+            Self::List(values) => {
+                let shown: Vec<String> = values.iter().map(Input::to_string).collect();
+                shown.join(", ")
+            }
+        }
+    }
+}
+
+const KEYS: [&str; 8] =
+    ["path", "name", "relative", "uniform", "log_uniform", "normal", "grid", "list"];
+
+/// Reads the list under `sweep`; what is wrong goes to `faults`.
+pub fn read(node: &Node, faults: &mut Vec<Fault>) -> Vec<Sweep> {
+    let Value::List(items) = &node.value else {
+        faults.push(wrong_type(&node.place, "sweep", &node.value, "").help("write [[sweep]]"));
+        return Vec::new();
+    };
+    let mut sweeps: Vec<Sweep> = Vec::new();
+    for item in items {
+        let Value::Table(table) = &item.value else {
+            faults.push(wrong_type(&item.place, "sweep", &item.value, ""));
+            continue;
+        };
+        let before = faults.len();
+        let read = read_one(table, &item.place, faults);
+        if faults.len() > before {
+            continue;
+        }
+        let Some(sweep) = read else { continue };
+        for path in &sweep.paths {
+            if sweeps.iter().any(|other| other.name == sweep.name || other.paths.contains(path)) {
+                let message = format!("`{path}` is swept twice");
+                faults.push(Fault::new(&sweep.place, message).help("one [[sweep]] for one input"));
+            }
+        }
+        sweeps.push(sweep);
+    }
+    sweeps
+}
+
+fn read_one(table: &Table, place: &Place, faults: &mut Vec<Fault>) -> Option<Sweep> {
+    let (mut paths, mut name, mut relative, mut draws) = (Vec::new(), None, false, Vec::new());
+    for Entry { key, node, place, .. } in &table.0 {
+        match (key.as_str(), &node.value) {
+            ("path", Value::Text(path)) => paths.push(path.clone()),
+            ("path", Value::List(all)) => paths.extend(texts(all, faults)),
+            ("name", Value::Text(text)) => name = Some(text.clone()),
+            ("relative", Value::Flag(flag)) => relative = *flag,
+            ("path" | "name", other) => {
+                faults.push(wrong_type(&node.place, &format!("sweep.{key}"), other, "text"));
+            }
+            ("relative", _) => {
+                faults.push(Fault::new(&node.place, "`sweep.relative` must be true or false"));
+            }
+            (known, Value::List(items)) if KEYS.contains(&known) => {
+                draws.extend(draw(known, items, &node.place, faults));
+            }
+            (known, _) if KEYS.contains(&known) => {
+                let message = format!("`sweep.{known}` must be a list");
+                faults.push(Fault::new(&node.place, message).help(shape(known)));
+            }
+            (other, _) => {
+                faults.push(unknown(place, "field", &format!("sweep.{other}"), other, &KEYS));
+            }
+        }
+    }
+    if paths.is_empty() {
+        faults.push(Fault::new(place, "a sweep has no path").help("add path = \"vehicle.mass\""));
+    }
+    if draws.len() != 1 {
+        let message = format!("a sweep has {} distributions: it takes one", draws.len());
+        let help = "give one of uniform, log_uniform, normal, grid, list";
+        faults.push(Fault::new(place, message).help(help));
+    }
+    let draw = draws.pop()?;
+    if relative && draw.extremes().iter().any(|value| matches!(value, Input::Text(_))) {
+        faults.push(Fault::new(place, "`sweep.relative`: a name cannot be multiplied"));
+    }
+    let name = name.or_else(|| paths.first().cloned())?;
+    Some(Sweep { name, paths, relative, draw, place: place.clone() })
+}
+
+fn texts(items: &[Node], faults: &mut Vec<Fault>) -> Vec<String> {
+    let mut all = Vec::new();
+    for item in items {
+        match &item.value {
+            Value::Text(text) => all.push(text.clone()),
+            other => faults.push(wrong_type(&item.place, "sweep.path", other, "text")),
+        }
+    }
+    all
+}
+
+fn shape(key: &str) -> &'static str {
+    match key {
+        "uniform" | "log_uniform" => "write [low, high]",
+        "normal" => "write [mean, standard deviation]",
+        "grid" => "write [low, high, count]",
+        _ => "write [value, value, ...]",
+    }
+}
+
+fn draw(key: &str, items: &[Node], place: &Place, faults: &mut Vec<Fault>) -> Option<Draw> {
+    if key == "list" {
+        return list(items, place, faults);
+    }
+    let numbers: Vec<f64> = items
+        .iter()
+        .filter_map(|item| match item.value {
+            Value::Number(x, _) if x.is_finite() => Some(x),
+            _ => None,
+        })
+        .collect();
+    let mut bad = |message: String| {
+        faults.push(Fault::new(place, message).help(shape(key)));
+        None
+    };
+    match (key, numbers.as_slice()) {
+        _ if numbers.len() != items.len() => bad(format!("`sweep.{key}` takes finite numbers")),
+        ("uniform", [low, high]) if low < high => Some(Draw::Uniform(*low, *high)),
+        ("log_uniform", [low, high]) if 0.0 < *low && low < high => {
+            Some(Draw::LogUniform(*low, *high))
+        }
+        ("normal", [mean, sigma]) if *sigma > 0.0 => Some(Draw::Normal(*mean, *sigma)),
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number by rule
+        ("grid", [low, high, count])
+            if low < high && *count >= 2.0 && *count <= 1e6 && count.fract() == 0.0 =>
+        {
+            Some(Draw::Grid(*low, *high, *count as u64))
+        }
+        ("uniform", [low, high]) => bad(format!("`sweep.uniform`: {low} is not below {high}")),
+        ("log_uniform", [low, high]) => {
+            bad(format!("`sweep.log_uniform`: 0 < {low} < {high} does not hold"))
+        }
+        ("normal", [_, sigma]) => {
+            bad(format!("`sweep.normal`: deviation {sigma} must be positive"))
+        }
+        ("grid", [low, high, count]) => bad(format!(
+            "`sweep.grid`: {low} must be below {high}, and {count} a whole number from 2 to 1000000"
+        )),
+        _ => bad(format!("`sweep.{key}` has {} numbers", numbers.len())),
+    }
+}
+
+fn list(items: &[Node], place: &Place, faults: &mut Vec<Fault>) -> Option<Draw> {
+    let mut values = Vec::new();
+    for item in items {
+        match &item.value {
+            Value::Number(x, _) if x.is_finite() => values.push(Input::Number(*x)),
+            Value::Text(text) => values.push(Input::Text(text.clone())),
+            Value::Flag(flag) => values.push(Input::Text(flag.to_string())),
+            other => faults.push(wrong_type(&item.place, "sweep.list", other, "1")),
+        }
+    }
+    let texts = values.iter().filter(|value| matches!(value, Input::Text(_))).count();
+    if texts != 0 && texts != values.len() {
+        faults.push(Fault::new(place, "`sweep.list` mixes numbers and names"));
+        return None;
+    }
+    if values.is_empty() {
+        faults.push(Fault::new(place, "`sweep.list` is empty").help(shape("list")));
+        return None;
+    }
+    Some(Draw::List(values))
+}

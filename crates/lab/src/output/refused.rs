@@ -1,0 +1,48 @@
+//! Paths that cannot be used, with what to do about it.
+
+use std::fmt;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// A path, what is wrong with it, what to do: the payload of an [`io::Error`].
+#[derive(Debug)]
+pub struct Refused {
+    path: PathBuf,
+    message: String,
+    help: String,
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.path.display(), self.message)?;
+        if self.help.is_empty() { Ok(()) } else { write!(f, "\n  = help: {}", self.help) }
+    }
+}
+
+impl std::error::Error for Refused {}
+
+/// A path that cannot be used.
+pub(super) fn refuse(path: &Path, message: &str, help: &str) -> io::Error {
+    let (path, message, help) = (path.to_owned(), message.to_owned(), help.to_owned());
+    io::Error::other(Refused { path, message, help })
+}
+
+/// What the system refused, with the path and what to do; errors that have both already stay.
+pub(super) fn advise(path: &Path, error: &io::Error) -> io::Error {
+    if let Some(refused) = error.get_ref().and_then(|inner| inner.downcast_ref::<Refused>()) {
+        return refuse(&refused.path, &refused.message, &refused.help);
+    }
+    let help = match error.kind() {
+        ErrorKind::NotADirectory => "a part of the path is a file: give another --out",
+        ErrorKind::PermissionDenied => {
+            "you may not write there: give another --out, or change the permissions"
+        }
+        ErrorKind::ReadOnlyFilesystem => "give an --out that can be written",
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
+            "make room, raise run.log_every, or give an --out with more room"
+        }
+        ErrorKind::InvalidFilename => "give a shorter name, without special characters",
+        _ => "give another --out",
+    };
+    refuse(path, &error.to_string(), help)
+}

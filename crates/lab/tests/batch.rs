@@ -1,0 +1,72 @@
+//! Flights that share lanes, leave them at different times and make room for others, against single ones.
+
+use stormpetrel_lab::fly::{Outcome, fly, fly_batch_at};
+use stormpetrel_lab::scenario::{Scenario, load_text};
+use stormpetrel_plant::dispatch::Width;
+
+const BASE: &str = r#"
+run                = { duration = 0.4, control_step = 0.001, substeps = 1, late = 0.2 }
+vehicle            = { model = "article-corrected" }
+reference          = { shape = "helix" }
+position           = { law = "pid" }
+observer           = { law = "hosm" }
+attitude_reference = { law = "rotation", rates = "commanded" }
+attitude           = { law = "tilt-priority" }
+rate               = { law = "indi" }
+actuation          = { kind = "rotors" }
+failure            = { allowed = true }
+disturbance        = [{ kind = "harmonic", force = 0.5 }]
+"#;
+
+fn scenario(sets: &[String]) -> Scenario {
+    let file = load_text("batch", "batch", BASE.to_owned(), sets).expect("a good scenario");
+    file.scenarios.into_iter().next().expect("one scenario")
+}
+
+/// Flights of different mass, length, step and structure; some fail, each at another time.
+fn flights() -> Vec<Scenario> {
+    let one = |i: u32| {
+        let mut sets = vec![
+            format!("vehicle.mass={}", 0.4 + 0.03 * f64::from(i)),
+            format!("run.duration={}", 0.1 * f64::from(1 + i % 4)),
+            format!("run.control_step={}", if i.is_multiple_of(5) { 0.002 } else { 0.001 }),
+            format!("start.offset.x={}", 0.2 * f64::from(i % 3)),
+        ];
+        if i.is_multiple_of(3) {
+            sets.push(format!("failure.position_error={}", 0.05 + 0.002 * f64::from(i)));
+        }
+        if i % 7 == 2 {
+            sets.push("observer.law=none".to_owned());
+        }
+        scenario(&sets)
+    };
+    (0..30).map(one).collect()
+}
+
+fn bits(outcome: &Outcome) -> Vec<(String, u64)> {
+    let failure = outcome.failure.map_or(-1.0, |failure| failure.time);
+    let named = outcome.metrics.iter().map(|(name, value)| (name.clone(), value.to_bits()));
+    named.chain([("failure".to_owned(), failure.to_bits())]).collect()
+}
+
+#[test]
+fn a_flight_has_the_same_bits_whoever_flew_in_its_lane_before() {
+    let flights = flights();
+    let alone: Vec<Outcome> = flights.iter().map(|scenario| fly(scenario, |_, _| {})).collect();
+    let failed = alone.iter().filter(|outcome| outcome.failure.is_some()).count();
+    assert!((3..25).contains(&failed), "{failed} failures: lanes should empty early and late");
+    for width in Width::available().filter(|w| *w == Width::Baseline || !cfg!(debug_assertions)) {
+        let together = fly_batch_at(&flights, width);
+        assert_eq!(together.len(), alone.len());
+        for ((a, b), scenario) in alone.iter().zip(&together).zip(&flights) {
+            assert_eq!(
+                bits(a),
+                bits(b),
+                "{}: mass {}",
+                width.name(),
+                scenario.vehicle.vehicle.mass
+            );
+            assert_eq!(a.failure.map(|f| f.cause), b.failure.map(|f| f.cause));
+        }
+    }
+}
