@@ -1,29 +1,29 @@
 //! `check`: read, judge, do not fly.
 
 use serde_json::json;
-use stormpetrel_lab::scenario::load;
+use stormpetrel_lab::scenario::fault::Faults;
+use stormpetrel_lab::scenario::{load, too_long};
 
 use crate::args::{Check, Common};
 use crate::{Failure, terminal};
 
 /// Reads every file; all faults of all files are printed.
 pub fn check(args: &Check, common: &Common) -> Result<(), Failure> {
-    let mut messages = Vec::new();
+    let mut faults = Vec::new();
     let mut good = Vec::new();
     for path in &args.files {
-        match load(path, &args.sets) {
+        let file = load(path, &args.sets);
+        match file.and_then(|file| Faults::from_iter(too_long(&file.scenarios)).check().map(|()| file)) {
             Ok(file) => good.push(json!({
                 "file": path.display().to_string(),
                 "title": file.title,
                 "flights": file.scenarios.iter().map(|s| s.name.clone()).collect::<Vec<_>>(),
                 "resolved": file.scenarios.iter().map(stormpetrel_lab::scenario::Scenario::resolved).collect::<Vec<_>>(),
             })),
-            Err(faults) => messages.push(faults.to_string()),
+            Err(found) => faults.extend(found.0),
         }
     }
-    if !messages.is_empty() {
-        return Err(Failure::Input(messages.join("\n\n")));
-    }
+    Faults(faults).check()?;
     if common.json {
         return terminal::print_json(&json!(good));
     }

@@ -1,7 +1,7 @@
 //! The command line of Stormpetrel.
 //!
 //! Exit codes: 0 good; 1 an expectation failed, or a flight failed that must not; 2 bad input or a
-//! file that cannot be read or written; 130 interrupted.
+//! file that cannot be read or written, standard output included; 130 interrupted.
 
 mod args;
 mod check;
@@ -15,10 +15,11 @@ mod terminal;
 use std::process::ExitCode;
 
 use clap::Parser;
+use serde_json::{Value, json};
+use stormpetrel_lab::output::Refused;
+use stormpetrel_lab::scenario::fault::{Fault, Faults};
 
 use args::{Args, Command};
-use stormpetrel_lab::output::Refused;
-use stormpetrel_lab::scenario::fault::Faults;
 
 /// What went wrong, for the exit code.
 pub enum Failure {
@@ -26,6 +27,8 @@ pub enum Failure {
     Unmet,
     /// Bad input or a file that cannot be used: the message.
     Input(String),
+    /// Faults of scenario files.
+    Faults(Faults),
     /// Interrupted in an orderly way; what to do is printed already.
     Interrupted,
 }
@@ -43,16 +46,16 @@ impl Failure {
     }
 }
 
-impl From<stormpetrel_lab::scenario::fault::Faults> for Failure {
-    fn from(faults: stormpetrel_lab::scenario::fault::Faults) -> Self {
-        Self::Input(faults.to_string())
+impl From<Faults> for Failure {
+    fn from(faults: Faults) -> Self {
+        Self::Faults(faults)
     }
 }
 
 fn main() -> ExitCode {
     let args = Args::parse();
     if ctrlc::set_handler(terminal::interrupted).is_err() {
-        anstream::eprintln!("warning: an interrupt may leave a `.stormpetrel-` folder behind");
+        terminal::warn("warning: an interrupt may leave a `.stormpetrel-` folder behind");
     }
     let done = match &args.command {
         Command::Reproduce(reproduce) => reproduce::reproduce(reproduce, &args.common),
@@ -64,13 +67,53 @@ fn main() -> ExitCode {
         Command::Explain(explain) => explain::explain(explain, &args.common),
         Command::Schema => terminal::print_json(&stormpetrel_lab::scenario::schema()),
     };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Unmet) => ExitCode::from(1),
-        Err(Failure::Interrupted) => ExitCode::from(130),
-        Err(Failure::Input(message)) => {
-            anstream::eprintln!("{message}");
+    let code = match done {
+        Ok(()) => 0,
+        Err(Failure::Unmet) => 1,
+        Err(Failure::Interrupted) => 130,
+        Err(failure) => {
+            refused(&failure, args.common.json);
+            2
+        }
+    };
+    // What was not said must not look like success.
+    match terminal::lost() {
+        Some(error) => {
+            terminal::warn(&format!("error: standard output: {error}"));
             ExitCode::from(2)
         }
+        None => ExitCode::from(code),
     }
+}
+
+/// Says what is wrong with the input, to a person or to a program.
+fn refused(failure: &Failure, json: bool) {
+    let text = match failure {
+        Failure::Faults(faults) if json => return terminal::say_json(&faults_json(faults)),
+        Failure::Faults(faults) => faults.to_string(),
+        Failure::Input(message) if json => {
+            let message = message.trim_start_matches("error: ");
+            let (message, help) = match message.split_once("\n  = help: ") {
+                Some((message, help)) => (message, Some(help)),
+                None => (message, None),
+            };
+            let fault = Fault::general(message);
+            let fault = Fault { help: help.map(str::to_owned), ..fault };
+            return terminal::say_json(&faults_json(&fault.into()));
+        }
+        Failure::Input(message) => message.clone(),
+        Failure::Unmet | Failure::Interrupted => return,
+    };
+    terminal::warn(&terminal::fold(&text, terminal::width()));
+}
+
+/// `{"faults": [...]}`: what is wrong, where, and what to do.
+fn faults_json(faults: &Faults) -> Value {
+    let one = |fault: &Fault| {
+        let (line, column) = fault.position().unzip();
+        let file = fault.place.as_ref().map(|place| place.source.name.as_str());
+        let (message, help) = (&fault.message, &fault.help);
+        json!({ "message": message, "file": file, "line": line, "column": column, "help": help })
+    };
+    json!({ "faults": faults.0.iter().map(one).collect::<Vec<_>>() })
 }

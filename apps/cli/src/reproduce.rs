@@ -18,8 +18,7 @@ use crate::{Failure, terminal};
 pub fn reproduce(args: &Reproduce, common: &Common) -> Result<(), Failure> {
     let begin = Instant::now();
     let broken = |error| Failure::file(&args.out, &error);
-    let folder = Folder::new(&args.out).map_err(broken)?;
-    terminal::remember(folder.staging());
+    let folder = Folder::with_parts(&args.out, &["figures"]).map_err(broken)?;
     let bar = terminal::progress("flying the article", common.quiet || common.json);
     let story = fly_all(|total| {
         bar.set_length(total as u64);

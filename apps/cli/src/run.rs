@@ -9,8 +9,8 @@ use stormpetrel_lab::log::Csv;
 use stormpetrel_lab::output::{Folder, manifest_json, metrics_json};
 use stormpetrel_lab::plot::png;
 use stormpetrel_lab::reproduce::{Flown, Table};
-use stormpetrel_lab::scenario::fault::Fault;
-use stormpetrel_lab::scenario::{File, Scenario, load};
+use stormpetrel_lab::scenario::fault::{Fault, Faults, printable};
+use stormpetrel_lab::scenario::{File, Scenario, load, too_long};
 use stormpetrel_lab::sensitivity::spread;
 use stormpetrel_lab::trace::Trace;
 
@@ -24,16 +24,18 @@ const POINTS: u64 = 20_000;
 pub fn run(args: &Run, common: &Common) -> Result<(), Failure> {
     let file = load(&args.file, &args.sets)?;
     let scenarios = choose(file, args.variant.as_deref())?;
+    if let Some(fault) = too_long(&scenarios) {
+        return Err(Faults::from(fault).into());
+    }
     let broken = |error| Failure::file(&args.out, &error);
-    let folder = Folder::new(&args.out).map_err(broken)?;
-    terminal::remember(folder.staging());
+    let folder = Folder::with_parts(&args.out, &parts(&scenarios)).map_err(broken)?;
     let bar = terminal::progress("flying", common.quiet || common.json);
     bar.set_length(scenarios.len() as u64);
     let single = scenarios.len() == 1;
     let mut flights = Vec::new();
     for scenario in scenarios {
-        let prefix = match scenario.name.split_once(':') {
-            Some((_, variant)) if !single => format!("{variant}/"),
+        let prefix = match &scenario.variant {
+            Some(variant) if !single => format!("{variant}/"),
             _ => String::new(),
         };
         flights.push(fly_into(&folder, &prefix, scenario).map_err(broken)?);
@@ -44,12 +46,17 @@ pub fn run(args: &Run, common: &Common) -> Result<(), Failure> {
     report(&flights, &args.out, common)
 }
 
+/// Folders in the result folder: one a variant, where there are several.
+fn parts(scenarios: &[Scenario]) -> Vec<&str> {
+    let several = scenarios.len() > 1;
+    scenarios.iter().filter(|_| several).filter_map(|s| s.variant.as_deref()).collect()
+}
+
 fn choose(file: File, variant: Option<&str>) -> Result<Vec<Scenario>, Failure> {
     let Some(variant) = variant else { return Ok(file.scenarios) };
-    let name = |scenario: &Scenario| scenario.name.split_once(':').map(|(_, v)| v.to_owned());
-    let known: Vec<_> = file.scenarios.iter().filter_map(name).collect();
+    let known: Vec<_> = file.scenarios.iter().filter_map(|s| s.variant.clone()).collect();
     let chosen: Vec<_> =
-        file.scenarios.into_iter().filter(|s| name(s).as_deref() == Some(variant)).collect();
+        file.scenarios.into_iter().filter(|s| s.variant.as_deref() == Some(variant)).collect();
     if chosen.is_empty() {
         let help = if known.is_empty() {
             "the file has no variants".into()
@@ -57,7 +64,7 @@ fn choose(file: File, variant: Option<&str>) -> Result<Vec<Scenario>, Failure> {
             format!("known: {}", known.join(", "))
         };
         let fault = Fault::general(format!("unknown variant `{variant}`")).help(help);
-        return Err(stormpetrel_lab::scenario::fault::Faults::from(fault).into());
+        return Err(Faults::from(fault).into());
     }
     Ok(chosen)
 }
@@ -137,25 +144,25 @@ pub fn print_unmet<'a>(flights: impl IntoIterator<Item = &'a Flown>, faults_only
     let mut bad = false;
     let mut expected = 0;
     for flown in flights {
-        let name = &flown.scenario.name;
+        let name = printable(&flown.scenario.name);
         expected += flown.scenario.expect.len();
         for (rule, value) in flown.unmet() {
             bad = true;
             let sensitive =
                 if flown.spread.is_some() { " (sensitive: no number can be expected)" } else { "" };
-            anstream::eprintln!("{name}: expectation failed: {rule}, is {value:.6e}{sensitive}");
+            terminal::warn(&format!("{name}: expectation failed: {rule}, {value}{sensitive}"));
         }
         if let Some(failure) = flown.outcome.failure.filter(|_| flown.failed()) {
             bad = true;
-            anstream::eprintln!(
-                "{name}: failed at {:.3} s: {}",
-                failure.time,
-                failure.cause.describe()
-            );
+            let cause = failure.cause.describe();
+            terminal::warn(&format!("{name}: failed at {:.3} s: {cause}", failure.time));
         }
     }
     if !bad && expected > 0 && !faults_only {
-        terminal::say(&format!("all {expected} expectations met"));
+        terminal::say(&match expected {
+            1 => "the expectation is met".to_owned(),
+            _ => format!("all {expected} expectations met"),
+        });
     }
     bad
 }

@@ -1,27 +1,27 @@
 //! What a person sees: tables that fit, colour and progress on a terminal only.
 
-use std::io::{IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use anstyle::Style;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
+use stormpetrel_lab::output::halt;
 use stormpetrel_lab::reproduce::Table;
+use stormpetrel_lab::scenario::fault::printable;
 
 use crate::Failure;
 
 /// Headings.
 pub const BOLD: Style = Style::new().bold();
 
-/// Folders to remove when the program is interrupted.
-static STAGING: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+/// Why nothing more can be said on standard output.
+static LOST: Mutex<Option<io::Error>> = Mutex::new(None);
 
-/// Remembers a folder in the making until the program ends.
-pub fn remember(staging: &Path) {
-    STAGING.lock().unwrap_or_else(PoisonError::into_inner).push(staging.to_owned());
-}
+/// A folder in the making is known from its beginning; nothing is left to do.
+pub fn remember(_staging: &Path) {}
 
 /// Set where the first interrupt must only ask for an end.
 pub static ORDERLY: AtomicBool = AtomicBool::new(false);
@@ -32,14 +32,13 @@ pub static STOP: AtomicBool = AtomicBool::new(false);
 /// possible the first interrupt asks for it, the second one leaves.
 pub fn interrupted() {
     if ORDERLY.load(Ordering::Relaxed) && !STOP.swap(true, Ordering::Relaxed) {
-        anstream::eprintln!("\nfinishing the flights in hand; interrupt again to leave at once");
+        warn("\nfinishing the flights in hand; interrupt again to leave at once");
         return;
     }
-    for folder in STAGING.lock().unwrap_or_else(PoisonError::into_inner).iter() {
-        // Nothing more can be done about a folder that will not go.
-        let _ = std::fs::remove_dir_all(folder);
+    // Held until the end: no file is made any more.
+    if let Some(_halt) = halt() {
+        std::process::exit(130);
     }
-    std::process::exit(130);
 }
 
 /// Columns of the terminal; 100 where there is none.
@@ -47,11 +46,25 @@ pub fn width() -> usize {
     terminal_size::terminal_size().map_or(100, |(width, _)| usize::from(width.0))
 }
 
-/// Prints a line; a reader that closed the pipe ends the program quietly.
+/// Prints a line. After an error nothing more is printed, and the program goes on: its verdict counts.
 pub fn say(text: &str) {
-    if writeln!(anstream::stdout(), "{text}").is_err() {
-        std::process::exit(0);
+    let mut lost = LOST.lock().unwrap_or_else(PoisonError::into_inner);
+    if lost.is_none() {
+        *lost = writeln!(anstream::stdout(), "{text}").err();
     }
+}
+
+/// Why something could not be printed; a reader that closed the pipe has read enough.
+pub fn lost() -> Option<io::Error> {
+    let mut lost = LOST.lock().unwrap_or_else(PoisonError::into_inner);
+    let error = lost.take().or_else(|| io::stdout().flush().err());
+    error.filter(|error| error.kind() != ErrorKind::BrokenPipe)
+}
+
+/// Prints a line on standard error, where that is possible.
+pub fn warn(text: &str) {
+    // There is nowhere left to complain.
+    let _ = writeln!(anstream::stderr(), "{text}");
 }
 
 /// Prints JSON.
@@ -60,6 +73,11 @@ pub fn print_json(value: &Value) -> Result<(), Failure> {
         serde_json::to_string_pretty(value).map_err(|e| Failure::Input(format!("error: {e}")))?;
     say(&text);
     Ok(())
+}
+
+/// Prints JSON that cannot fail to be written out.
+pub fn say_json(value: &Value) {
+    say(&format!("{value:#}"));
 }
 
 /// A bar on a terminal, nothing elsewhere.
@@ -82,6 +100,27 @@ pub fn with_rate(bar: &ProgressBar) {
     }
 }
 
+/// Breaks the lines of messages that are prose, with the indentation of their beginning; lines that show
+/// a file stay as they are.
+pub fn fold(text: &str, width: usize) -> String {
+    let folded = text.lines().map(|line| match line {
+        _ if line.chars().count() <= width => line.to_owned(),
+        _ if line.trim_start().starts_with("= help: ") => {
+            hang(line, line.find("= help: ").unwrap_or(0) + 8, width)
+        }
+        _ if line.starts_with("error: ") => hang(line, 7, width),
+        _ => line.to_owned(),
+    });
+    folded.collect::<Vec<_>>().join("\n")
+}
+
+/// A line broken so that all but the first of its lines are indented by `head` letters.
+pub fn hang(line: &str, head: usize, width: usize) -> String {
+    let (first, rest) = line.split_at_checked(head).unwrap_or(("", line));
+    let room = width.saturating_sub(head).max(20);
+    format!("{first}{}", wrap(rest, room).replace('\n', &format!("\n{}", " ".repeat(head))))
+}
+
 /// Breaks a text into lines of at most `width` letters, between words.
 pub fn wrap(text: &str, width: usize) -> String {
     let mut lines = vec![String::new()];
@@ -102,12 +141,12 @@ pub fn wrap(text: &str, width: usize) -> String {
 
 /// Prints a table with its title, lead and notes so that it fits the width.
 pub fn print_table(table: &Table, width: usize) {
-    say(&format!("\n{BOLD}{}{BOLD:#}", wrap(&table.title, width)));
+    say(&format!("\n{BOLD}{}{BOLD:#}", wrap(&printable(&table.title), width)));
     if !table.lead.is_empty() {
         say(&wrap(&table.lead, width));
     }
     say("");
-    say(&grid(table, width));
+    say(&printable(&grid(table, width)));
     for note in &table.notes {
         say(&wrap(note, width));
     }
@@ -177,6 +216,15 @@ mod tests {
             assert!(text.lines().all(|line| line.chars().count() <= width), "{width}:\n{text}");
             assert!(text.contains("1.25") && text.contains("0.5"));
         }
+    }
+
+    #[test]
+    fn messages_are_folded_and_what_they_show_of_a_file_is_not() {
+        let text = "error: one two three four five\n  --> file.toml:1:1\n1 | kp = [1, 2, 3, 4, 5, 6, 7, 8]\n  = help: six seven eight nine ten";
+        assert_eq!(
+            fold(text, 26),
+            "error: one two three four\n       five\n  --> file.toml:1:1\n1 | kp = [1, 2, 3, 4, 5, 6, 7, 8]\n  = help: six seven eight\n          nine ten"
+        );
     }
 
     #[test]

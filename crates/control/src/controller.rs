@@ -72,7 +72,7 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
         reference: &L::Reference,
         dt: T,
     ) -> L::Command {
-        let input = good_input(measurement, dt) & reference.finite();
+        let input = good_input(measurement, dt).and(finite(reference));
         self.update_checked(input, measurement, reference, dt)
     }
 
@@ -80,23 +80,24 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
     #[inline(always)]
     pub fn update_checked(
         &mut self,
-        input: T::Mask,
+        input: Good<T>,
         measurement: &Measurement<T>,
         reference: &L::Reference,
         dt: T,
     ) -> L::Command {
         // Whether all is well decides only what need not be computed: the results are the same.
-        let before = if input.all() { None } else { Some(self.law) };
+        let before = if input.all { None } else { Some(self.law) };
         self.law.tune(dt);
         let command = self.law.update(measurement, reference, dt);
         let limit = self.law.limit();
         // Numbers whose magnitudes together are within the limit are finite, and within it one by one.
-        let within = command.magnitude().le(limit) & limit.is_finite();
-        if (input & within & self.law.finite()).all() {
+        // Zero times a state or limit that is not finite makes the sum one that is not a number.
+        let rest = (self.law.sum(|x| x) + limit) * T::zero();
+        if input.all && (command.magnitude() + rest).le(limit).all() {
             self.last = command;
             self.flag = T::zero();
         } else {
-            self.settle(&command, limit, input, before, measurement);
+            self.settle(&command, limit, input.lanes, before, measurement);
         }
         self.last
     }
@@ -179,19 +180,20 @@ impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
     /// [`GuardedObserver::correct`] where the caller knows already in which lanes the `input` is
     /// good.
     #[inline(always)]
-    pub fn correct_checked(&mut self, input: T::Mask, measurement: &Measurement<T>, dt: T) {
+    pub fn correct_checked(&mut self, input: Good<T>, measurement: &Measurement<T>, dt: T) {
         self.flag = T::zero();
-        let before = if input.all() { None } else { Some(self.law) };
+        let before = if input.all { None } else { Some(self.law) };
         self.law.correct(measurement, dt);
-        self.last = if input.all() { *measurement } else { blend(input, measurement, &self.last) };
+        self.last =
+            if input.all { *measurement } else { blend(input.lanes, measurement, &self.last) };
         self.check(input, before);
     }
 
     /// [`Observer::advance`], total.
     #[inline(always)]
     pub fn advance(&mut self, applied: &Applied<T>, dt: T) {
-        let input = applied.finite() & good_step(dt);
-        let before = if input.all() { None } else { Some(self.law) };
+        let input = passing(applied, dt);
+        let before = if input.all { None } else { Some(self.law) };
         self.law.advance(applied, dt);
         self.check(input, before);
     }
@@ -204,10 +206,10 @@ impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
     }
 
     #[inline(always)]
-    fn check(&mut self, input: T::Mask, before: Option<O>) {
-        let good = input & self.law.finite();
-        if !good.all() {
-            self.mend(good, input, before);
+    fn check(&mut self, input: Good<T>, before: Option<O>) {
+        let good = input.and(finite(&self.law));
+        if !good.all {
+            self.mend(good.lanes, input.lanes, before);
         }
     }
 
@@ -225,10 +227,45 @@ impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
     }
 }
 
-/// Whether a measurement is finite and `dt` a time that can pass, lane by lane.
+/// In which lanes something is good, and whether it is in all of them: asked once, used often.
+#[derive(Clone, Copy, Debug)]
+pub struct Good<T: Real> {
+    lanes: T::Mask,
+    all: bool,
+}
+
+impl<T: Real> Good<T> {
+    #[inline(always)]
+    fn new(lanes: T::Mask) -> Self {
+        Self { lanes, all: lanes.all() }
+    }
+
+    /// Where both are good.
+    #[inline(always)]
+    pub fn and(self, other: Self) -> Self {
+        if self.all && other.all { self } else { Self::new(self.lanes & other.lanes) }
+    }
+}
+
+/// Where the record is finite.
 #[inline(always)]
-pub fn good_input<T: Real>(measurement: &Measurement<T>, dt: T) -> T::Mask {
-    measurement.finite() & good_step(dt)
+pub fn finite<T: Real>(record: &impl Record<T>) -> Good<T> {
+    // A finite sum has finite terms. Terms so large that their sum is not are looked at one by one.
+    let quick = Good::new(record.sum(|x| x).is_finite());
+    if quick.all { quick } else { Good::new(record.finite()) }
+}
+
+/// Where a measurement is finite and `dt` a time that can pass.
+#[inline(always)]
+pub fn good_input<T: Real>(measurement: &Measurement<T>, dt: T) -> Good<T> {
+    passing(measurement, dt)
+}
+
+/// Where the record is finite and `dt` a time that can pass.
+#[inline(always)]
+fn passing<T: Real>(record: &impl Record<T>, dt: T) -> Good<T> {
+    let quick = Good::new(record.sum(|x| x).is_finite() & good_step(dt));
+    if quick.all { quick } else { Good::new(record.finite() & good_step(dt)) }
 }
 
 /// Whether the step is a time that can pass. More than a second is a gap and not a step: an

@@ -9,7 +9,7 @@ use core::fmt;
 use core::marker::PhantomData;
 
 use crate::lanes::Lanes;
-use crate::real::{Mask as _, Real};
+use crate::real::Real;
 
 /// What a declaration says of one number.
 #[derive(Clone, Copy, Debug)]
@@ -117,18 +117,12 @@ pub trait Record<T: Real>: Copy {
     /// are settings.
     fn each_variable(&self, f: &mut impl FnMut(T));
 
-    /// Whether every number that may change in flight is finite, lane by lane.
-    #[inline(always)]
-    fn finite(&self) -> T::Mask {
-        // A finite sum has finite terms. Terms so large that their sum is not are looked at again.
-        let quick = self.sum(|x| x).is_finite();
-        if quick.all() { quick } else { self.finite_each() }
-    }
-
-    /// [`Record::finite`], number by number.
+    /// Whether every number that may change in flight is finite, lane by lane. For the rare case: asking
+    /// whether [`Record::sum`] is finite is quicker, and mostly enough.
     #[cold]
     #[inline(never)]
-    fn finite_each(&self) -> T::Mask {
+    fn finite(&self) -> T::Mask {
+        // Zero times a number is zero; zero times an infinity or NaN is NaN, and the sum stays it.
         self.sum(|x| x * T::Scalar::zero()).eq(T::zero())
     }
 
@@ -143,9 +137,13 @@ pub trait Record<T: Real>: Copy {
     fn sum(&self, f: impl Fn(T::Scalar) -> T::Scalar) -> T {
         let mut sums = T::zero();
         for i in 0..T::LANES {
-            let mut sum = T::Scalar::zero();
-            self.pick_lane(i).each_variable(&mut |x| sum += f(x));
-            sums.set_lane(i, sum);
+            // Four sums in turn: an addition need not wait for the one before it.
+            let (mut part, mut turn) = ([T::Scalar::zero(); 4], 0);
+            self.pick_lane(i).each_variable(&mut |x| {
+                part[turn % 4] += f(x);
+                turn += 1;
+            });
+            sums.set_lane(i, (part[0] + part[1]) + (part[2] + part[3]));
         }
         sums
     }

@@ -2,14 +2,13 @@
 
 use crate::attitude::AttitudeLaw;
 use crate::attitude_reference::AttitudeReference;
-use crate::controller::{Guarded, GuardedObserver, good_input};
+use crate::controller::{Guarded, GuardedObserver, finite, good_input};
 use crate::math::{Vec3, World};
 use crate::observer::Observer;
 use crate::position::Position;
 use crate::rate::RateLaw;
 use crate::real::Real;
 use crate::record;
-use crate::record::Record as _;
 use crate::signals::{Applied, Attitude, Measurement, Rate, Thrust, Trajectory, Wrench};
 
 /// Down to which level the stack commands.
@@ -94,7 +93,7 @@ impl<T: Real> Stack<T> {
     ) -> Command<T> {
         let input = good_input(measurement, dt);
         self.observer.correct_checked(input, measurement, dt);
-        let position = input & trajectory.finite();
+        let position = input.and(finite(trajectory));
         let mut thrust = self.position.update_checked(position, measurement, trajectory, dt);
         thrust.force -= self.observer.estimate();
         if self.exit == Exit::Thrust {

@@ -271,12 +271,23 @@ impl<T: Real> Flight<T> {
         for _ in 0..self.substeps {
             state = self.actuation.step(&state, h, &self.vehicle, &held);
         }
-        let finite = state.finite();
-        let moves = finite & T::zero().lt(self.alive);
-        self.state = if moves.all() { state } else { blend(moves, &state, &self.state) };
-        self.fail(!finite, 4.0);
+        let steady = state.sum(|x| x).is_finite() & T::zero().lt(self.alive);
+        if steady.all() {
+            self.state = state;
+        } else {
+            self.settle(&state);
+        }
         self.flown += self.alive;
         self.tick += 1;
+    }
+
+    /// Moves only the flights that go on and whose state is finite.
+    #[cold]
+    #[inline(never)]
+    fn settle(&mut self, state: &State<T>) {
+        let finite = state.finite();
+        self.state = blend(finite & T::zero().lt(self.alive), state, &self.state);
+        self.fail(!finite, 4.0);
     }
 
     /// Ends the flight where a limit is passed.
@@ -288,13 +299,20 @@ impl<T: Real> Flight<T> {
             let e = tick.position.pick(i) - tick.reference.position.pick(i);
             error.set_lane(i, e.norm_squared());
         }
-        self.fail(position_error.sq().lt(error), 1.0);
+        let far = position_error.sq().lt(error);
+        let low = tick.position.z.lt(ground);
         // Only where a tilt limit is set; 180 deg allows any attitude.
-        if !T::lit(180.0).le(tilt_deg).all() {
+        let tilts = !T::lit(180.0).le(tilt_deg).all();
+        // The usual case; what follows changes nothing then.
+        if !tilts && (!(far | low)).all() {
+            return;
+        }
+        self.fail(far, 1.0);
+        if tilts {
             let (_, lowest) = (tilt_deg * T::lit(core::f64::consts::PI / 180.0)).sin_cos();
             self.fail(tick.attitude.z_axis().z.lt(lowest) & tilt_deg.lt(T::lit(180.0)), 2.0);
         }
-        self.fail(tick.position.z.lt(ground), 3.0);
+        self.fail(low, 3.0);
     }
 
     #[inline(always)]

@@ -36,8 +36,10 @@ const MOST_TICKS: f64 = 1e8;
 const MOST_STEPS: f64 = 1e9;
 /// Most variants of a file.
 const MOST_VARIANTS: usize = 1000;
+/// Most rows of one log.
+const MOST_ROWS: f64 = 5e6;
 /// Most rows of the logs of one command.
-const MOST_ROWS: f64 = 2e7;
+const MOST_ROWS_OF_ALL: f64 = 2e7;
 /// Bytes of a row of the log, about.
 const ROW: f64 = 800.0;
 /// Faults after which no further variant is read.
@@ -340,7 +342,7 @@ fn impossible(expectation: &expect::Expectation, scenario: &Scenario) -> Option<
         return Some(fault(message).help("lower run.late or raise run.duration"));
     }
     let (least, most) = bounds(name, run.duration);
-    if expectation.rule.possible(least, most) {
+    if expectation.possible(least, most) {
         return None;
     }
     let bound = match expectation.rule {
@@ -365,18 +367,25 @@ fn bounds(name: &str, duration: f64) -> (f64, f64) {
     }
 }
 
-/// Why these flights cannot be logged together.
+/// Why these flights cannot be logged.
 pub fn too_long(scenarios: &[Scenario]) -> Option<Fault> {
-    let rows: f64 = scenarios.iter().map(|s| s.ticks() as f64 / s.run.log_every).sum();
-    if rows <= MOST_ROWS {
+    let rows = |scenario: &Scenario| scenario.ticks() as f64 / scenario.run.log_every;
+    let fault = |who: &str, rows: f64, most: f64, help: &str| {
+        let size = rows * ROW / 1e9;
+        let message =
+            format!("{who} would have {rows:.1e} rows, about {size:.0} GB: at most {most:e}");
+        Some(Fault::general(message).help(help))
+    };
+    if let Some(long) = scenarios.iter().find(|scenario| rows(scenario) > MOST_ROWS) {
+        let who = format!("{}: the log", long.name);
+        return fault(&who, rows(long), MOST_ROWS, "raise run.log_every");
+    }
+    let sum: f64 = scenarios.iter().map(rows).sum();
+    if sum <= MOST_ROWS_OF_ALL {
         return None;
     }
-    let message = format!(
-        "the logs of {} flights would have {rows:.1e} rows, about {:.0} GB: at most {MOST_ROWS:e}",
-        scenarios.len(),
-        rows * ROW / 1e9
-    );
-    Some(Fault::general(message).help("raise run.log_every, or fly fewer variants at once"))
+    let who = format!("the logs of {} flights", scenarios.len());
+    fault(&who, sum, MOST_ROWS_OF_ALL, "raise run.log_every, or fly fewer variants at once")
 }
 
 /// Rules that look at more than one field.
@@ -415,14 +424,6 @@ fn check_whole(scenario: &Scenario, tree: &Table, broken: &[&str], faults: &mut 
             steps / 2e6 / 60.0
         );
         say("run", message, "lower run.substeps, shorten run.duration or lengthen run.control_step");
-    }
-    if ticks / run.log_every > 5e6 {
-        let message = format!(
-            "`run.log_every` = {}: the log would have {:.1e} rows",
-            run.log_every,
-            ticks / run.log_every
-        );
-        say("run", message, "log at most 5e6 rows: raise run.log_every");
     }
     let inertia = scenario.vehicle.vehicle.inertia;
     for (a, b, c) in [

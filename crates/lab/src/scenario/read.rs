@@ -168,7 +168,7 @@ fn refuse(field: &str, x: f64, whole: bool, meta: &Meta) -> Option<(String, Opti
     let unit = if meta.unit == "1" { String::new() } else { format!(" {}", meta.unit) };
     let range = format!("{} to {}{unit}", scientific(lo), scientific(hi));
     if !x.is_finite() {
-        return Some((format!("`{field}` = {x}: must be a finite number, {range}"), None));
+        return Some((format!("`{field}` = {x}: must be a finite number from {range}"), None));
     }
     if meta.unit == "count" && !whole && x.fract() != 0.0 {
         return Some((format!("`{field}` = {x}: must be a whole number"), None));
