@@ -11,12 +11,13 @@ pub fn bench() -> Result<(), String> {
     Step::cargo("program", &["build", "--release", "-p", "stormpetrel"]).run()?;
     let tables = Step::cargo("benchmark", &["bench", "-p", "stormpetrel-lab", "--bench", "speed"])
         .output()?;
-    let (seconds, megabytes) = reproduce()?;
+    let (seconds, megabytes) = measured(&["reproduce", "--quiet"], "bench-report")?;
+    let campaigns = campaigns()?;
     let compiler = Step::new("compiler", "rustc", &["--version"]).output()?;
     let text = format!(
         "# Benchmarks\n\nMade by `cargo xtask bench`: the ordinary release build, best of five runs.\n\n\
          Machine: {}, {} processors. Compiler: {}.\n\n{}\n\
-         The whole `reproduce` with report and figures: {seconds:.1} s, {megabytes:.0} MB at most.\n",
+         ## Whole commands\n\nThe whole `reproduce` with report and figures: {seconds:.1} s, {megabytes:.0} MB at most.\n\n{campaigns}",
         processor(),
         std::thread::available_parallelism().map_or(1, usize::from),
         compiler.trim(),
@@ -38,16 +39,47 @@ fn processor() -> String {
     format!("{} (model {}, stepping {})", line("model name"), line("model\t"), line("stepping"))
 }
 
-/// Wall time (s) and largest resident size (MB) of `stormpetrel reproduce`.
-fn reproduce() -> Result<(f64, f64), String> {
+/// Time and memory of campaigns from one flight to a million, 0.1 s of flight each.
+fn campaigns() -> Result<String, String> {
+    let mut text = "Campaigns of the scenario `campaign/robustness`, 0.1 s of flight each, all metrics, results written:\n\n\
+                    | flights | s | flights/s | MB at most |\n|---|---|---|---|\n"
+        .to_owned();
+    for flights in [1u32, 100, 10_000, 100_000, 1_000_000] {
+        let set = format!("campaign.flights={flights}");
+        let file = "scenarios/campaign/robustness.toml";
+        let arguments = [
+            "sweep",
+            file,
+            "--quiet",
+            "--set",
+            "run.duration=0.1",
+            "--set",
+            "run.late=0.05",
+            "--set",
+            &set,
+        ];
+        let (seconds, megabytes) = measured(&arguments, "bench-campaign")?;
+        let rate = f64::from(flights) / seconds;
+        text += &format!("| {flights} | {seconds:.2} | {rate:.0} | {megabytes:.0} |\n");
+    }
+    Ok(text)
+}
+
+/// Wall time (s) and largest resident size (MB) of the program with these arguments.
+fn measured(arguments: &[&str], out: &str) -> Result<(f64, f64), String> {
     let target = target_dir();
+    let folder = target.join(out);
+    // A folder of an earlier run must not count as begun.
+    let _ = fs::remove_dir_all(&folder);
+    let begin = Instant::now();
     let mut child = Command::new(target.join("release/stormpetrel"))
-        .args(["reproduce", "--quiet", "--out"])
-        .arg(target.join("bench-report"))
+        .args(arguments)
+        .arg("--out")
+        .arg(&folder)
+        .current_dir(root())
         .stdout(Stdio::null())
         .spawn()
         .map_err(|e| format!("stormpetrel: {e}"))?;
-    let begin = Instant::now();
     let status = format!("/proc/{}/status", child.id());
     let mut peak = 0.0;
     while child.try_wait().map_err(|e| format!("stormpetrel: {e}"))?.is_none() {
@@ -58,5 +90,11 @@ fn reproduce() -> Result<(f64, f64), String> {
         peak = kilobytes.unwrap_or(peak);
         std::thread::sleep(Duration::from_millis(2));
     }
-    Ok((begin.elapsed().as_secs_f64(), peak / 1e3))
+    let done = child.wait().map_err(|e| format!("stormpetrel: {e}"))?;
+    if !done.success() {
+        return Err(format!("stormpetrel {} failed: {done}", arguments.join(" ")));
+    }
+    let seconds = begin.elapsed().as_secs_f64();
+    let _ = fs::remove_dir_all(&folder);
+    Ok((seconds, peak / 1e3))
 }

@@ -43,6 +43,7 @@ fn main() -> ExitCode {
         ["firmware"] => firmware::replay(),
         ["symbols"] => symbols::check(),
         ["bench"] => bench::bench(),
+        ["abuse"] => abuse(),
         ["schema"] => schema::check(),
         ["schema", "--write"] => schema::write(),
         _ => {
@@ -68,6 +69,24 @@ fn test() -> Result<(), String> {
     firmware::replay()?;
     symbols::check()?;
     portable::hash()
+}
+
+/// The tests that take too long for every change.
+fn abuse() -> Result<(), String> {
+    let arguments = [
+        "test",
+        "--release",
+        "-p",
+        "stormpetrel-lab",
+        "-p",
+        "stormpetrel",
+        "--test",
+        "campaign",
+        "--",
+        "--ignored",
+        "--nocapture",
+    ];
+    Step::cargo("campaigns under abuse", &arguments).run()
 }
 
 fn lint() -> Result<(), String> {

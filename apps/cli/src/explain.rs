@@ -2,13 +2,15 @@
 
 use serde_json::json;
 use stormpetrel_lab::catalogue::{Entry, catalogue};
+use stormpetrel_lab::scenario::read::nearest;
 
 use crate::args::{Common, Explain};
 use crate::{Failure, terminal};
 
 /// Prints everything about one name; where several kinds share it, about each.
 pub fn explain(args: &Explain, common: &Common) -> Result<(), Failure> {
-    let wanted = args.name.as_str();
+    let lower = args.name.to_lowercase();
+    let wanted = lower.as_str();
     let (kind, name) =
         wanted.split_once('/').map_or((None, wanted), |(kind, name)| (Some(kind), name));
     let all = catalogue();
@@ -25,20 +27,7 @@ pub fn explain(args: &Explain, common: &Common) -> Result<(), Failure> {
         .filter(|e| (e.name == name && kind.is_none_or(|kind| kind == e.kind)) || metric(e))
         .collect();
     if found.is_empty() {
-        let nearest = all
-            .iter()
-            .filter(|entry| entry.name.contains(name) || name.contains(entry.name.as_str()))
-            .map(|entry| format!("{}/{}", entry.kind, entry.name))
-            .collect::<Vec<_>>()
-            .join(", ");
-        let help = if nearest.is_empty() {
-            "`stormpetrel list` shows all names".into()
-        } else {
-            format!("did you mean: {nearest}")
-        };
-        return Err(Failure::Input(format!(
-            "error: nothing is called `{wanted}`\n  = help: {help}"
-        )));
+        return Err(unknown(&all, &args.name, name));
     }
     if common.json {
         return terminal::print_json(&json!(
@@ -51,6 +40,29 @@ pub fn explain(args: &Explain, common: &Common) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// Nothing has this name: what may have been meant.
+fn unknown(all: &[Entry], wanted: &str, name: &str) -> Failure {
+    let of_kind: Vec<&str> =
+        all.iter().filter(|entry| entry.kind == name).map(|entry| entry.name.as_str()).collect();
+    if !of_kind.is_empty() {
+        let help = format!("give one of its names: {}", of_kind.join(", "));
+        return Failure::Input(format!("error: `{wanted}` is a kind, not a name\n  = help: {help}"));
+    }
+    let names: Vec<&str> = all.iter().map(|entry| entry.name.as_str()).collect();
+    let near = nearest(name, &names);
+    let meant = |entry: &&Entry| {
+        let known = entry.name.as_str();
+        near == Some(known) || known.contains(name) || name.contains(known)
+    };
+    let meant: Vec<String> =
+        all.iter().filter(meant).map(|entry| format!("{}/{}", entry.kind, entry.name)).collect();
+    let help = match meant.as_slice() {
+        [] => "`stormpetrel list` shows all names".into(),
+        meant => format!("did you mean: {}", meant.join(", ")),
+    };
+    Failure::Input(format!("error: nothing is called `{wanted}`\n  = help: {help}"))
 }
 
 fn as_json(entry: &Entry) -> serde_json::Value {
@@ -75,7 +87,7 @@ fn print(entry: &Entry) {
     if text.is_empty() {
         terminal::say(&terminal::wrap(summary, width));
     } else {
-        terminal::say(&format!("\n{}", text.trim_end()));
+        terminal::say(&format!("\n{}", terminal::prose(text.trim_end(), width)));
     }
     if !key.is_empty() {
         let list = if kind == &"disturbance" {
@@ -88,9 +100,10 @@ fn print(entry: &Entry) {
     if !choices.is_empty() {
         terminal::say(&format!("\n{bold}Choices{bold:#} (the first is the default)"));
         for choice in choices {
-            terminal::say(&format!("  {}: {}", choice.name, choice.doc));
+            let line = format!("  {}: {}", choice.name, choice.doc);
+            terminal::say(&terminal::hang(&line, 2, width));
             for (value, doc) in &choice.values {
-                terminal::say(&format!("      \"{value}\"  {doc}"));
+                terminal::say(&terminal::hang(&format!("      \"{value}\" {doc}"), 6, width));
             }
         }
     }
@@ -99,10 +112,8 @@ fn print(entry: &Entry) {
         for n in numbers {
             let frame = if n.frame.is_empty() { String::new() } else { format!(", {}", n.frame) };
             let head = format!("  {} = {} [{}{frame}]", n.name, n.default, n.unit);
-            terminal::say(&format!(
-                "{head}\n      {} From {:e} to {:e}.",
-                n.doc, n.range.0, n.range.1
-            ));
+            let line = format!("      {} From {:e} to {:e}.", n.doc, n.range.0, n.range.1);
+            terminal::say(&format!("{head}\n{}", terminal::hang(&line, 6, width)));
         }
     }
     terminal::say("");

@@ -114,6 +114,23 @@ pub fn fold(text: &str, width: usize) -> String {
     folded.collect::<Vec<_>>().join("\n")
 }
 
+/// A text whose paragraphs are broken anew where they are too wide; indented lines are equations and stay.
+pub fn prose(text: &str, width: usize) -> String {
+    let is_prose = |line: &str| !line.is_empty() && !line.starts_with([' ', '|', '-', '*', '#']);
+    let mut blocks: Vec<(bool, Vec<&str>)> = Vec::new();
+    for line in text.lines() {
+        match blocks.last_mut() {
+            Some((prose, lines)) if *prose && is_prose(line) => lines.push(line),
+            _ => blocks.push((is_prose(line), vec![line])),
+        }
+    }
+    let broken = blocks.into_iter().map(|(prose, lines)| {
+        let fits = lines.iter().all(|line| line.chars().count() <= width);
+        if prose && !fits { wrap(&lines.join(" "), width) } else { lines.join("\n") }
+    });
+    broken.collect::<Vec<_>>().join("\n")
+}
+
 /// A line broken so that all but the first of its lines are indented by `head` letters.
 pub fn hang(line: &str, head: usize, width: usize) -> String {
     let (first, rest) = line.split_at_checked(head).unwrap_or(("", line));

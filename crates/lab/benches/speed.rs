@@ -10,6 +10,7 @@ use stormpetrel_control::lanes::Lanes;
 use stormpetrel_control::observer::ObserverSettings;
 use stormpetrel_control::position::PositionSettings;
 use stormpetrel_control::rate::RateLawSettings;
+use stormpetrel_control::real::Real;
 use stormpetrel_control::record::RecordExt;
 use stormpetrel_control::registry::Settings;
 use stormpetrel_control::signals::{Applied, Measurement, Model};
@@ -17,6 +18,7 @@ use stormpetrel_lab::fly::{LANES, fly, fly_batch_at};
 use stormpetrel_lab::scenario::Scenario;
 use stormpetrel_lab::shipped::shipped;
 use stormpetrel_plant::dispatch::{Width, Work};
+use stormpetrel_plant::dynamics::{Held, Push};
 use stormpetrel_plant::flight::Flight;
 
 const TICKS: u64 = 20_000;
@@ -27,7 +29,7 @@ struct Steps<T> {
     ticks: u64,
 }
 
-impl<T: stormpetrel_control::real::Real> Work for Steps<T> {
+impl<T: Real> Work for Steps<T> {
     type Output = Flight<T>;
     #[inline(always)]
     fn run(self) -> Flight<T> {
@@ -152,7 +154,115 @@ fn closed_loop(name: &str) {
     ));
 }
 
+/// Integration steps of the body alone: Runge-Kutta, rotor lag, no drag yet.
+struct Plant<T> {
+    flight: Flight<T>,
+    steps: u64,
+}
+
+impl<T: Real> Work for Plant<T> {
+    type Output = Flight<T>;
+    #[inline(always)]
+    fn run(self) -> Flight<T> {
+        let mut flight = self.flight;
+        let held = Held::new(&flight.per, &Push::default());
+        let h = flight.control_step;
+        for _ in 0..self.steps {
+            flight.state = flight.actuation.step(&flight.state, h, &flight.vehicle, &held);
+        }
+        flight
+    }
+}
+
+/// Multiplications and additions that wait for nothing but themselves: the most that the machine does
+/// without contracting them.
+struct Peak<T>(T);
+
+const CHAINS: usize = 10;
+
+impl<T: Real> Work for Peak<T> {
+    type Output = T;
+    #[inline(always)]
+    fn run(self) -> T {
+        let (scale, shift) = (self.0, self.0 * T::lit(1e-9));
+        let mut chains = [self.0; CHAINS];
+        for _ in 0..TICKS {
+            for chain in &mut chains {
+                *chain = *chain * scale + shift;
+            }
+        }
+        chains.into_iter().fold(T::zero(), |sum, chain| sum + chain)
+    }
+}
+
+type Eight = Lanes<f64, LANES>;
+
+/// Million vehicle-steps per second: single, in lanes at each width, and in lanes on every core.
+fn throughput() {
+    let mut one = scenario("article/rotors:rate-commanded");
+    one.run.substeps = 1.0;
+    let flight = one.flight();
+    let gathered: Flight<Eight> = RecordExt::<f64>::gather([&flight; LANES]);
+    let widest = Width::widest();
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    say(
+        "\n## Throughput\n\nMillion vehicle-steps per second: one Runge-Kutta step of 1 ms each; the closed loop is PID, HOSM, attitude,\nINDI, allocation and rotors at 1 kHz, without metrics.\n",
+    );
+    say("| how | plant alone | closed loop |\n|---|---|---|");
+    let rate = |ns: f64| format!("{:.1}", 1e3 / ns);
+    let row = |how: &str, plant: f64, closed: f64| {
+        say(&format!("| {how} | {} | {} |", rate(plant), rate(closed)))
+    };
+    let plant = best(TICKS, || {
+        black_box(Plant { flight, steps: TICKS }.run());
+    });
+    let closed = best(TICKS, || {
+        black_box(Steps { flight, ticks: TICKS }.run());
+    });
+    row("single", plant, closed);
+    let lanes = |width: Width| {
+        let plant = best(TICKS * LANES as u64, || {
+            black_box(width.run(Plant { flight: gathered, steps: TICKS }));
+        });
+        let closed = best(TICKS * LANES as u64, || {
+            black_box(width.run(Steps { flight: gathered, ticks: TICKS }));
+        });
+        (plant, closed)
+    };
+    for width in Width::available() {
+        let (plant, closed) = lanes(width);
+        row(&format!("eight lanes, {}", width.name()), plant, closed);
+    }
+    let on_all = |work: &(dyn Fn() + Sync)| {
+        best(TICKS * (LANES * threads) as u64, || {
+            std::thread::scope(|scope| {
+                for _ in 0..threads {
+                    scope.spawn(work);
+                }
+            });
+        })
+    };
+    let plant = on_all(&|| {
+        black_box(widest.run(Plant { flight: gathered, steps: TICKS }));
+    });
+    let closed = on_all(&|| {
+        black_box(widest.run(Steps { flight: gathered, ticks: TICKS }));
+    });
+    row(&format!("eight lanes, {}, {threads} threads", widest.name()), plant, closed);
+    say(
+        "\nThe machine's own peak, measured: multiplications and additions of doubles without contraction, per core.\n",
+    );
+    say("| width | 10^9 operations/s |\n|---|---|");
+    for width in Width::available() {
+        let ns = best(TICKS * (2 * CHAINS * LANES) as u64, || {
+            black_box(width.run(Peak(black_box(Eight::lit(1.000_000_1)))));
+        });
+        say(&format!("| {} | {:.1} |", width.name(), 1.0 / ns));
+    }
+}
+
 fn main() {
+    say("## Laws and closed loop\n");
     laws();
     for name in [
         "article/consistent:rate-commanded",
@@ -161,4 +271,5 @@ fn main() {
     ] {
         closed_loop(name);
     }
+    throughput();
 }

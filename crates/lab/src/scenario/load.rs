@@ -11,9 +11,7 @@ use stormpetrel_plant::disturbance::MOST;
 use crate::campaign::{plan, sweep};
 use crate::metric::{names, of_attitude};
 
-use super::document::{
-    Entry, Node, Table, Value, missing_items, not_to_set, parse, parse_set,
-};
+use super::document::{Entry, Node, Table, Value, missing_items, not_to_set, parse, parse_set};
 use super::expect::Rule;
 use super::fault::{Fault, Faults, Place, Source};
 use super::read::{Reader, scientific, unknown, wrong_type};
@@ -423,7 +421,11 @@ fn check_whole(scenario: &Scenario, tree: &Table, broken: &[&str], faults: &mut 
             "`run`: {steps:.1e} integration steps, about {:.0} min: a flight has at most {MOST_STEPS:e}",
             steps / 2e6 / 60.0
         );
-        say("run", message, "lower run.substeps, shorten run.duration or lengthen run.control_step");
+        say(
+            "run",
+            message,
+            "lower run.substeps, shorten run.duration or lengthen run.control_step",
+        );
     }
     let inertia = scenario.vehicle.vehicle.inertia;
     for (a, b, c) in [

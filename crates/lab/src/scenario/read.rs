@@ -206,20 +206,20 @@ fn round(x: f64) -> f64 {
     format!("{x:.4e}").parse().unwrap_or(x)
 }
 
+/// The known name that was probably meant, whatever the case of its letters.
+pub fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
+    // A very long name is near to nothing, and would take long to compare.
+    let name = name.chars().take(64).collect::<String>().to_lowercase();
+    let distance = |known: &str| strsim::damerau_levenshtein(&name, &known.to_lowercase());
+    let near = known.iter().map(|known| (distance(known), *known)).filter(|(distance, known)| {
+        *distance <= 1 + known.len() / 3 || known.starts_with(&name) || name.starts_with(known)
+    });
+    near.min().map(|(_, known)| known)
+}
+
 /// A name that nobody knows, with the nearest one that somebody does.
 pub fn unknown(place: &Place, what: &str, shown: &str, name: &str, known: &[&str]) -> Fault {
-    // A very long name is near to nothing, and would take long to compare.
-    let short: String = name.chars().take(64).collect::<String>().to_lowercase();
-    let name = short.as_str();
-    let nearest = known
-        .iter()
-        .map(|candidate| (strsim::damerau_levenshtein(name, &candidate.to_lowercase()), *candidate))
-        .filter(|(distance, candidate)| {
-            *distance <= 1 + candidate.len() / 3
-                || candidate.starts_with(name)
-                || name.starts_with(candidate)
-        })
-        .min();
+    let nearest = nearest(name, known);
     // A long list of names hides the one that is meant.
     let list = if known.len() > 20 {
         "`stormpetrel list` shows all names".to_owned()
@@ -227,7 +227,7 @@ pub fn unknown(place: &Place, what: &str, shown: &str, name: &str, known: &[&str
         format!("known: {}", known.join(", "))
     };
     let help = match nearest {
-        Some((_, candidate)) => format!("did you mean `{candidate}`? {list}"),
+        Some(candidate) => format!("did you mean `{candidate}`? {list}"),
         None if known.is_empty() => "this block has no settings".to_owned(),
         None => list,
     };
