@@ -48,7 +48,9 @@ fn unknown(all: &[Entry], wanted: &str, name: &str) -> Failure {
         all.iter().filter(|entry| entry.kind == name).map(|entry| entry.name.as_str()).collect();
     if !of_kind.is_empty() {
         let help = format!("give one of its names: {}", of_kind.join(", "));
-        return Failure::Input(format!("error: `{wanted}` is a kind, not a name\n  = help: {help}"));
+        return Failure::Input(format!(
+            "error: `{wanted}` is a kind, not a name\n  = help: {help}"
+        ));
     }
     let names: Vec<&str> = all.iter().map(|entry| entry.name.as_str()).collect();
     let near = nearest(name, &names);

@@ -12,11 +12,12 @@ mod run;
 mod sweep;
 mod terminal;
 
+use std::io::IsTerminal;
 use std::process::ExitCode;
 
 use clap::Parser;
 use serde_json::{Value, json};
-use stormpetrel_lab::output::Refused;
+use stormpetrel_lab::output::{Refused, advise};
 use stormpetrel_lab::scenario::fault::{Fault, Faults};
 
 use args::{Args, Command};
@@ -34,12 +35,20 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// A result folder that cannot be used, with what to do.
+    pub fn out(path: &std::path::Path, error: &std::io::Error) -> Self {
+        if error.kind() == std::io::ErrorKind::Interrupted {
+            return Self::Interrupted;
+        }
+        Self::file(path, &advise(path, error))
+    }
+
     /// A file or folder that cannot be used.
     pub fn file(path: &std::path::Path, error: &std::io::Error) -> Self {
         if error.kind() == std::io::ErrorKind::Interrupted {
             return Self::Interrupted;
         }
-        if error.get_ref().is_some_and(|inner| inner.is::<Refused>()) {
+        if error.get_ref().is_some_and(<dyn std::error::Error + Send + Sync>::is::<Refused>) {
             return Self::Input(format!("error: {error}"));
         }
         Self::Input(format!("error: {}: {error}", path.display()))
@@ -104,7 +113,9 @@ fn refused(failure: &Failure, json: bool) {
         Failure::Input(message) => message.clone(),
         Failure::Unmet | Failure::Interrupted => return,
     };
-    terminal::warn(&terminal::fold(&text, terminal::width()));
+    // Only people want lines that end.
+    let person = std::io::stderr().is_terminal();
+    terminal::warn(&if person { terminal::fold(&text, terminal::width()) } else { text });
 }
 
 /// `{"faults": [...]}`: what is wrong, where, and what to do.

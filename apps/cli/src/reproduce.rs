@@ -17,7 +17,7 @@ use crate::{Failure, terminal};
 /// Flies everything, prints the tables, writes the report.
 pub fn reproduce(args: &Reproduce, common: &Common) -> Result<(), Failure> {
     let begin = Instant::now();
-    let broken = |error| Failure::file(&args.out, &error);
+    let broken = |error| Failure::out(&args.out, &error);
     let folder = Folder::with_parts(&args.out, &["figures"]).map_err(broken)?;
     let bar = terminal::progress("flying the article", common.quiet || common.json);
     let story = fly_all(|total| {

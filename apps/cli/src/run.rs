@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 use stormpetrel_lab::figures;
 use stormpetrel_lab::fly::fly;
 use stormpetrel_lab::log::Csv;
-use stormpetrel_lab::output::{Folder, manifest_json, metrics_json};
+use stormpetrel_lab::output::{Folder, manifest_json, metrics_json, variants_json};
 use stormpetrel_lab::plot::png;
 use stormpetrel_lab::reproduce::{Flown, Table};
 use stormpetrel_lab::scenario::fault::{Fault, Faults, printable};
@@ -27,8 +27,13 @@ pub fn run(args: &Run, common: &Common) -> Result<(), Failure> {
     if let Some(fault) = too_long(&scenarios) {
         return Err(Faults::from(fault).into());
     }
-    let broken = |error| Failure::file(&args.out, &error);
-    let folder = Folder::with_parts(&args.out, &parts(&scenarios)).map_err(broken)?;
+    let broken = |error| Failure::out(&args.out, &error);
+    let parts = parts(&scenarios);
+    let folder = Folder::with_parts(&args.out, &parts).map_err(broken)?;
+    if !parts.is_empty() {
+        let manifest = format!("{:#}\n", variants_json(&parts));
+        folder.write("manifest.json", manifest.as_bytes()).map_err(broken)?;
+    }
     let bar = terminal::progress("flying", common.quiet || common.json);
     bar.set_length(scenarios.len() as u64);
     let single = scenarios.len() == 1;

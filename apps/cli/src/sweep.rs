@@ -30,7 +30,7 @@ pub fn sweep(args: &Sweep, common: &Common) -> Result<(), Failure> {
     let logs = args.logs.iter().map(|text| Which::read(text)).collect::<Result<Vec<_>, _>>()?;
     let broken = |error: io::Error| Failure::file(&args.out, &error);
     let threads = args.threads.map_or_else(cores, usize::from);
-    announce(&campaign, shard.1, threads, common)?;
+    announce(&campaign, shard.1, threads, args, common)?;
     let held = files::holds(&args.out, &campaign).map_err(broken)?;
     allowed(held, args.resume, &args.out)?;
     fs::create_dir_all(&args.out).map_err(broken)?;
@@ -155,6 +155,7 @@ fn announce(
     campaign: &Campaign,
     shards: u64,
     threads: usize,
+    args: &Sweep,
     common: &Common,
 ) -> Result<(), Failure> {
     let flights = campaign.flights().div_ceil(shards);
@@ -170,7 +171,16 @@ fn announce(
             "fly fewer or shorter flights, or parts of the plan with --shard",
         ));
     }
-    let size = 2.0 * estimate.bytes as f64 / 1e6;
+    let bytes = 2 * estimate.bytes;
+    let size = bytes as f64 / 1e6;
+    if let Some(free) = free(&args.out).filter(|free| *free < bytes && !args.resume) {
+        let message = format!(
+            "{}: {flights} flights need {size:.0} MB, {:.0} MB are free",
+            args.out.display(),
+            free as f64 / 1e6
+        );
+        return Err(input(message, "give an --out on another disk, or fly fewer flights"));
+    }
     say(
         common,
         &format!(
@@ -178,6 +188,12 @@ fn announce(
         ),
     );
     Ok(())
+}
+
+/// Bytes that are free where the folder is or will be; `None` where the system does not say.
+fn free(out: &Path) -> Option<u64> {
+    let there = out.ancestors().find(|folder| folder.exists()).unwrap_or(Path::new("."));
+    fs4::available_space(there).ok()
 }
 
 fn duration(time: Duration) -> String {

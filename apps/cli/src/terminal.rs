@@ -239,8 +239,8 @@ mod tests {
     fn messages_are_folded_and_what_they_show_of_a_file_is_not() {
         let text = "error: one two three four five\n  --> file.toml:1:1\n1 | kp = [1, 2, 3, 4, 5, 6, 7, 8]\n  = help: six seven eight nine ten";
         assert_eq!(
-            fold(text, 26),
-            "error: one two three four\n       five\n  --> file.toml:1:1\n1 | kp = [1, 2, 3, 4, 5, 6, 7, 8]\n  = help: six seven eight\n          nine ten"
+            fold(text, 29),
+            "error: one two three four\n       five\n  --> file.toml:1:1\n1 | kp = [1, 2, 3, 4, 5, 6, 7, 8]\n  = help: six seven eight nine\n          ten"
         );
     }
 

@@ -102,6 +102,10 @@ fn the_log_is_the_same_bytes_each_time() {
             "scenarios/first-flight.toml",
             "--set",
             "run.duration=0.3",
+            "--set",
+            "run.late=0.1",
+            "--set",
+            "expect.position.late_max.max=1",
             "--quiet",
             "--out",
             out,
@@ -275,4 +279,190 @@ fn quiet_is_quiet_and_json_is_json() {
     ends(&json, 0);
     let all: serde_json::Value = serde_json::from_slice(&json.stdout).expect("JSON");
     assert!(all["hover"]["position.iae"].is_number(), "{all}");
+}
+
+/// A scenario file with two variants of which the second may have an expectation that is not met.
+fn two_variants(folder: &Path, expect: &str) -> PathBuf {
+    let hover = fs::read_to_string(root().join("scenarios/hover.toml")).expect("a file");
+    let path = folder.join("two.toml");
+    let head = hover.split("[expect]").next().expect("a head");
+    let variants = format!("[[variant]]\nname = \"a\"\n[[variant]]\nname = \"b\"\n{expect}\n");
+    fs::write(&path, format!("{head}\n{variants}")).expect("a file");
+    path
+}
+
+#[test]
+fn a_colon_in_the_path_leads_nowhere_else() {
+    let folder = TempDir::new().expect("a folder");
+    let odd = folder.path().join("x:..");
+    fs::create_dir(&odd).expect("a folder");
+    let file = two_variants(&odd, "");
+    let out = folder.path().join("out");
+    let flags = ["--set", "run.duration=0.05", "--quiet", "--out", out.to_str().expect("a path")];
+    let file = file.to_str().expect("a path");
+    ends(&stormpetrel(&[&["run", file][..], &flags].concat()), 0);
+    assert_eq!(names(&out), ["a", "b", "manifest.json"]);
+    assert_eq!(names(folder.path()), ["out", "x:.."]);
+    ends(&stormpetrel(&[&["run", file, "--variant", "b"][..], &flags].concat()), 0);
+    assert!(!names(&out).contains(&"a".to_owned()), "flights of the last run are gone");
+}
+
+#[test]
+fn a_flight_without_late_samples_has_no_late_maximum() {
+    let folder = TempDir::new().expect("a folder");
+    let file = two_variants(folder.path(), "expect.position.late_max = { max = 1.0 }");
+    let out = folder.path().join("out");
+    let output = stormpetrel(&[
+        "run",
+        file.to_str().expect("a path"),
+        "--variant",
+        "b",
+        "--set",
+        "start.offset=[20, 0, 0]",
+        "--set",
+        "run.late=1.0",
+        "--out",
+        out.to_str().expect("a path"),
+    ]);
+    ends(&output, 1);
+    assert!(text(&output.stderr).contains("no sample after run.late = 1 s"));
+    let metrics = fs::read_to_string(out.join("metrics.json")).expect("metrics");
+    assert!(!metrics.contains("late_max"), "{metrics}");
+}
+
+#[cfg(unix)]
+mod streams {
+    use std::process::Stdio;
+
+    use super::*;
+
+    fn unmet(folder: &Path) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_stormpetrel"));
+        command.current_dir(root()).args(["run", "scenarios/hover.toml", "--set"]);
+        command.args(["run.duration=0.05", "--set", "start.offset=0.1", "--out"]);
+        command.arg(folder.join("out"));
+        command
+    }
+
+    fn full() -> Stdio {
+        fs::OpenOptions::new().write(true).open("/dev/full").expect("a full device").into()
+    }
+
+    #[test]
+    fn a_reader_that_leaves_does_not_change_the_verdict() {
+        let folder = TempDir::new().expect("a folder");
+        let mut child = unmet(folder.path()).stdout(Stdio::piped()).spawn().expect("started");
+        drop(child.stdout.take());
+        assert_eq!(child.wait().expect("an end").code(), Some(1));
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn what_cannot_be_said_is_an_error_and_no_panic() {
+        let folder = TempDir::new().expect("a folder");
+        let output = unmet(folder.path()).stdout(full()).output().expect("an end");
+        ends(&output, 2);
+        assert!(text(&output.stderr).contains("error: standard output: "));
+        let output = unmet(folder.path()).stderr(full()).output().expect("an end");
+        ends(&output, 1);
+    }
+
+    #[test]
+    fn an_interrupted_flight_leaves_the_old_results_and_nothing_else() {
+        let folder = TempDir::new().expect("a folder");
+        let out = folder.path().join("out");
+        fs::create_dir(&out).expect("a folder");
+        fs::write(out.join("flight.csv"), "old").expect("a file");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_stormpetrel"));
+        command.current_dir(root()).args(["run", "scenarios/hover.toml", "--out"]).arg(&out);
+        let more = ["run.duration=5000", "--set", "run.log_every=100000"];
+        let mut child = command.arg("--set").args(more).spawn().expect("started");
+        while names(folder.path()).len() < 2 {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        assert!(interrupt.expect("sent").success());
+        assert_eq!(child.wait().expect("an end").code(), Some(130));
+        assert_eq!(names(folder.path()), ["out"]);
+        assert_eq!(names(&out), ["flight.csv"]);
+    }
+}
+
+#[test]
+fn faults_are_json_where_json_is_asked_for() {
+    let output =
+        stormpetrel(&["check", "scenarios/hover.toml", "--set", "position.kpp=1", "--json"]);
+    ends(&output, 2);
+    let all: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let fault = &all["faults"][0];
+    assert_eq!(fault["message"], "unknown field `position.kpp`");
+    assert_eq!((&fault["file"], &fault["line"]), (&"--set".into(), &1.into()));
+    assert_eq!(fault["column"], 10);
+    assert!(fault["help"].as_str().expect("help").starts_with("did you mean `kp`?"));
+    let output = stormpetrel(&["explain", "homs", "--json"]);
+    ends(&output, 2);
+    let all: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(all["faults"][0]["message"], "nothing is called `homs`");
+}
+
+#[test]
+fn a_setting_that_does_not_fit_is_explained() {
+    for (set, expected) in [
+        ("start.offset=[1, 2", "unclosed array"),
+        ("variant.0.name=\"x\"", "`variant` cannot be set"),
+        ("disturbance.1.force=3", "there is no disturbance at all"),
+        ("position.kp=0,6", "write a point in numbers: 0.6"),
+        ("position.kp=0x10", "0x10: write the number in decimal"),
+        ("run.substeps=1000", "integration steps"),
+        ("run.duration=9000", "the log would have 9.0e6 rows"),
+    ] {
+        let mut flags = vec!["check", "scenarios/hover.toml", "--set", set];
+        if set == "run.substeps=1000" {
+            flags.extend(["--set", "run.duration=1e4"]);
+        }
+        let output = stormpetrel(&flags);
+        ends(&output, 2);
+        let message = text(&output.stderr);
+        assert!(message.contains(expected), "{set}: {message}");
+    }
+}
+
+#[test]
+fn what_is_no_scenario_file_is_named() {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("file.toml");
+    let check = || text(&stormpetrel(&["check", path.to_str().expect("a path")]).stderr);
+    fs::write(&path, b"title = \"a\"\nabout = \"\xE4\"").expect("a file");
+    assert!(check().contains("byte 21, in line 2, is not UTF-8"), "{}", check());
+    fs::write(&path, b"\xFF\xFEt\0").expect("a file");
+    assert!(check().contains("the file is UTF-16: save it as UTF-8"), "{}", check());
+    fs::write(&path, "#".repeat(2 << 20)).expect("a file");
+    assert!(check().contains("too long for a scenario"), "{}", check());
+    fs::remove_file(&path).expect("removed");
+    fs::create_dir(&path).expect("a folder");
+    assert!(check().contains("is a folder"), "{}", check());
+    let zeros = stormpetrel(&["check", "/dev/zero"]);
+    ends(&zeros, 2);
+}
+
+#[test]
+fn each_kind_is_listed_once_and_names_are_found_in_any_case() {
+    let list = text(&stormpetrel(&["list"]).stdout);
+    assert_eq!(list.lines().filter(|line| *line == "block").count(), 1, "{list}");
+    ends(&stormpetrel(&["list", "Observer"]), 0);
+    ends(&stormpetrel(&["explain", "HOSM"]), 0);
+    let message = |arguments: &[&str]| text(&stormpetrel(arguments).stderr);
+    assert!(message(&["list", "Obsrver"]).contains("did you mean `observer`?"));
+    assert!(message(&["explain", "Homs"]).contains("did you mean: observer/hosm"));
+    assert!(message(&["explain", "observer"]).contains("give one of its names: none, hosm"));
+}
+
+#[test]
+fn a_file_has_at_most_a_thousand_variants() {
+    let folder = TempDir::new().expect("a folder");
+    let more: String = (2..=1001).map(|i| format!("[[variant]]\nname = \"v{i}\"\n")).collect();
+    let file = two_variants(folder.path(), &more);
+    let output = stormpetrel(&["check", file.to_str().expect("a path")]);
+    ends(&output, 2);
+    assert!(text(&output.stderr).contains("1002 variants: a file has at most 1000"));
 }

@@ -12,10 +12,12 @@ use crate::scenario::Scenario;
 use crate::sensitivity::Spread;
 
 pub use folder::{Folder, Halt, halt};
-pub use refused::Refused;
+pub use refused::{Refused, advise};
 
 /// Version of the program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// Name of the program in manifests.
+const PROGRAM: &str = "stormpetrel";
 /// Revision of the source, or `unknown` outside a checkout.
 pub const REVISION: &str = env!("STORMPETREL_REVISION");
 
@@ -43,6 +45,11 @@ pub fn metrics_json(outcome: &Outcome, spread: Option<&Spread>) -> Value {
     Value::Object(all)
 }
 
+/// `manifest.json` of a folder with a folder for each variant.
+pub fn variants_json(variants: &[&str]) -> Value {
+    json!({ "program": PROGRAM, "version": VERSION, "revision": REVISION, "variants": variants })
+}
+
 /// `manifest.json`: everything needed to fly it again and to read the log.
 pub fn manifest_json(scenario: &Scenario) -> Value {
     let columns: Vec<_> = columns()
@@ -50,7 +57,7 @@ pub fn manifest_json(scenario: &Scenario) -> Value {
         .map(|c| json!({ "name": c.name, "unit": c.unit, "frame": c.frame, "meaning": c.doc }))
         .collect();
     json!({
-        "program": "stormpetrel",
+        "program": PROGRAM,
         "version": VERSION,
         "revision": REVISION,
         "scenario": scenario.name,

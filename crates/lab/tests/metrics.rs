@@ -122,3 +122,40 @@ fn nothing_counts_after_a_flight_has_failed() {
     assert!(all.contains(&("position.max".to_owned(), 1.0)));
     assert!(all.contains(&("time.flown".to_owned(), DT)));
 }
+
+/// Error signals of a whole flight, tick by tick, and its metrics as summed on line.
+fn logged() -> (Vec<stormpetrel_lab::metric::Errors<f64>>, stormpetrel_lab::fly::Outcome) {
+    let file = stormpetrel_lab::shipped::shipped("first-flight").expect("shipped").expect("good");
+    let mut log = Vec::new();
+    let outcome = stormpetrel_lab::fly::fly(&file.scenarios[0], |_, errors| log.push(*errors));
+    (log, outcome)
+}
+
+#[test]
+fn metrics_on_line_are_those_of_the_whole_log() {
+    let (log, outcome) = logged();
+    assert_eq!(log.len(), 20_000);
+    let get = |name: &str| outcome.get(name).unwrap_or_else(|| panic!("{name}"));
+    for (name, of) in [
+        ("position", (|e| e.position) as fn(&stormpetrel_lab::metric::Errors<f64>) -> f64),
+        ("position.y", |e| e.axis.y),
+        ("attitude.angle", |e| e.angle),
+        ("attitude.euler", |e| e.euler),
+        ("tilt", |e| e.tilt),
+    ] {
+        let errors: Vec<f64> = log.iter().map(|e| of(e).abs()).collect();
+        // The definitions of `explain`, in the order of the log: exactly the same sums.
+        let iae: f64 = errors.iter().fold(0.0, |sum, e| sum + e * DT);
+        let ise: f64 = errors.iter().fold(0.0, |sum, e| sum + e * e * DT);
+        let max = errors.iter().fold(0.0, |a, b| f64::max(a, *b));
+        let late = errors[10_000..].iter().fold(0.0, |a, b| f64::max(a, *b));
+        assert_eq!(get(&format!("{name}.iae")), iae, "{name}");
+        assert_eq!(get(&format!("{name}.ise")), ise, "{name}");
+        assert_eq!(get(&format!("{name}.max")), max, "{name}");
+        assert_eq!(get(&format!("{name}.late_max")), late, "{name}");
+        // The percentile is that of a histogram.
+        let mut sorted = errors;
+        sorted.sort_by(f64::total_cmp);
+        close(get(&format!("{name}.p95")), sorted[18_999], 0.008);
+    }
+}

@@ -182,8 +182,14 @@ pub fn fly_rows(campaign: &Campaign, rows: std::ops::Range<u64>) -> io::Result<V
 }
 
 fn entry(outcome: &Outcome, columns: &Columns) -> Entry {
-    let value = |name: &String| outcome.get(name).unwrap_or(f64::NAN);
-    Entry { failure: outcome.failure, metrics: columns.metrics.iter().map(value).collect() }
+    // Both are in the order of `metric::names`, so the next is mostly the one that is looked for.
+    let mut next = outcome.metrics.iter().peekable();
+    let value = |name: &String| {
+        let found = next.next_if(|(known, _)| known == name).map(|(_, value)| *value);
+        found.or_else(|| outcome.get(name)).unwrap_or(f64::NAN)
+    };
+    let metrics = columns.metrics.iter();
+    Entry { failure: outcome.failure, metrics: metrics.map(value).collect() }
 }
 
 type Flown = (u64, io::Result<Vec<Entry>>);

@@ -157,7 +157,7 @@ pub fn report(
     let page = html(&Story {
         title: &campaign.scenario.title,
         about: &campaign.scenario.about,
-        scenario: &campaign.scenario.name,
+        scenario: campaign.name(),
         inputs: &campaign.describe(),
         units: &campaign.units(),
         summary,
@@ -186,7 +186,7 @@ pub fn summary_json(campaign: &Campaign, summary: &Summary) -> Json {
         .map(|row| json!({ "index": row.index, "set": campaign.sets(&row.inputs, row.seed) }))
         .collect();
     json!({
-        "scenario": campaign.scenario.name,
+        "scenario": campaign.name(),
         "flights": summary.flights(),
         "flown": summary.flown(),
         "success": { "share": share, "low": interval.low, "high": interval.high },

@@ -221,6 +221,12 @@ impl Campaign {
         self.sweeps.iter().map(describe).collect()
     }
 
+    /// Name of the scenario without its folder: the results must not depend on where the file stands.
+    pub fn name(&self) -> &str {
+        let name = &self.scenario.name;
+        name.rsplit_once(['/', '\\']).map_or(name.as_str(), |(_, name)| name)
+    }
+
     /// The unit of each input; `1` for a factor or a name.
     pub fn units(&self) -> Vec<String> {
         let of = |sweep: &Sweep| match sweep.paths.first() {
@@ -237,7 +243,7 @@ impl Campaign {
             Sampling::Independent => "independent",
         };
         json!({
-            "scenario": self.scenario.name,
+            "scenario": self.name(),
             "resolved": self.scenario.resolved(),
             "flights": self.flights,
             "sampling": choices,

@@ -8,6 +8,9 @@ use std::fs::{self, DirEntry, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
 
+use serde_json::Value;
+
+use super::PROGRAM;
 use super::folder::PREFIX;
 use super::refused::refuse;
 
@@ -17,67 +20,79 @@ const FILES: [&str; 4] = ["flight.csv", "metrics.json", "manifest.json", "report
 const FIGURES: [&str; 5] = ["path", "errors", "disturbance", "commands", "rotors"];
 /// Folder of the report's figures.
 const PICTURES: &str = "figures";
+/// Longest manifest that is read, in bytes.
+const LONGEST: u64 = 1 << 24;
 /// Most files of others that move over to a new folder; with more the folder stays where it is.
 const MOST: usize = 1000;
 
 /// Whether the program gives this name to files of a folder, or of the report's figures.
 fn is_name(name: &OsStr, pictures: bool) -> bool {
     let Some(name) = name.to_str() else { return false };
-    let figure = |stem: &str| match pictures {
-        true => FIGURES.iter().any(|f| stem.strip_suffix(f).is_some_and(|s| s.ends_with('-'))),
-        false => FIGURES.contains(&stem),
-    };
+    let of_flight =
+        |stem: &str| FIGURES.iter().any(|f| stem.strip_suffix(f).is_some_and(|s| s.ends_with('-')));
+    let figure = |stem: &str| if pictures { of_flight(stem) } else { FIGURES.contains(&stem) };
     let drawn = name.strip_suffix(".svg").or_else(|| name.strip_suffix(".png")).is_some_and(figure);
     drawn || (!pictures && FILES.contains(&name))
 }
 
-/// Whether this program made the folder.
-fn is_marked(folder: &Path) -> bool {
-    folder.join("report.html").is_file() && folder.join(PICTURES).is_dir() || has_manifest(folder)
+/// The manifest of a folder of results.
+fn manifest(folder: &Path) -> Option<Value> {
+    let path = folder.join("manifest.json");
+    let meta = fs::symlink_metadata(&path).ok()?;
+    if !meta.is_file() || meta.len() > LONGEST {
+        return None;
+    }
+    let manifest: Value = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
+    (manifest["program"] == PROGRAM).then_some(manifest)
 }
 
-fn has_manifest(folder: &Path) -> bool {
-    let path = folder.join("manifest.json");
-    let small = fs::symlink_metadata(&path).is_ok_and(|m| m.is_file() && m.len() < 1 << 24);
-    let manifest = || serde_json::from_slice::<serde_json::Value>(&fs::read(path).ok()?).ok();
-    small && manifest().is_some_and(|manifest| manifest["program"] == "stormpetrel")
+fn is_one_of(folder: &Path, names: &[String]) -> bool {
+    folder.file_name().is_some_and(|own| names.iter().any(|name| own == name.as_str()))
 }
 
 /// What a folder is to this program.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Kind {
-    Results,
+    /// Results, with these variants in folders of their own.
+    Results(Vec<String>),
+    /// The report of the article.
+    Report,
+    /// Its figures.
     Pictures,
+    /// Somebody else's.
     Foreign,
 }
 
 impl Kind {
     fn of(folder: &Path) -> Self {
-        if is_marked(folder) { Self::Results } else { Self::Foreign }
+        if let Some(manifest) = manifest(folder) {
+            let names = manifest["variants"].as_array().into_iter().flatten();
+            return Self::Results(names.filter_map(Value::as_str).map(str::to_owned).collect());
+        }
+        let report = folder.join("report.html").is_file() && folder.join(PICTURES).is_dir();
+        if report { Self::Report } else { Self::Foreign }
     }
 
     /// Kind of a folder in one of this kind.
-    fn below(self, folder: &Path) -> Self {
+    fn below(&self, folder: &Path) -> Self {
         match self {
-            Self::Foreign | Self::Pictures => Self::Foreign,
-            Self::Results if folder.ends_with(PICTURES) => Self::Pictures,
-            // A variant has a manifest; the figures of the report have not.
-            Self::Results if has_manifest(folder) => Self::Results,
-            Self::Results => Self::Foreign,
+            Self::Results(variants) if is_one_of(folder, variants) => Self::of(folder),
+            Self::Report if folder.ends_with(PICTURES) => Self::Pictures,
+            _ => Self::Foreign,
         }
     }
 
-    fn owns(self, entry: &DirEntry) -> bool {
-        self != Self::Foreign
+    fn owns(&self, entry: &DirEntry) -> bool {
+        *self != Self::Foreign
             && entry.file_type().is_ok_and(|kind| kind.is_file())
-            && is_name(&entry.file_name(), self == Self::Pictures)
+            && is_name(&entry.file_name(), *self == Self::Pictures)
     }
 }
 
 /// Every entry of a folder that is there, with whether it is the program's own.
 fn walk(
     folder: &Path,
-    kind: Kind,
+    kind: &Kind,
     each: &mut dyn FnMut(&DirEntry, bool, bool) -> io::Result<bool>,
 ) -> io::Result<bool> {
     for entry in fs::read_dir(folder)? {
@@ -89,7 +104,7 @@ fn walk(
         let is_dir = entry.file_type()?.is_dir();
         let inner = kind.below(&path);
         let own = if is_dir { inner != Kind::Foreign } else { kind.owns(&entry) };
-        if !each(&entry, is_dir, own)? || (is_dir && !walk(&path, inner, each)?) {
+        if !each(&entry, is_dir, own)? || (is_dir && !walk(&path, &inner, each)?) {
             return Ok(false);
         }
     }
@@ -127,7 +142,7 @@ pub(super) fn carry(old: &Path, new: &Path) -> io::Result<bool> {
         return Ok(false);
     }
     let mut foreign: Vec<(PathBuf, bool)> = Vec::new();
-    let few = walk(old, Kind::of(old), &mut |entry, is_dir, own| {
+    let few = walk(old, &Kind::of(old), &mut |entry, is_dir, own| {
         if !own {
             foreign.push((entry.path(), is_dir));
         }
@@ -167,7 +182,7 @@ fn same_mode(from: &Path, to: &Path) -> io::Result<()> {
 /// Removes what the program wrote to the target before and does not write now.
 pub(super) fn remove_stale(new: &Path, target: &Path) -> io::Result<()> {
     let (mut files, mut folders) = (Vec::new(), Vec::new());
-    walk(target, Kind::of(target), &mut |entry, is_dir, own| {
+    walk(target, &Kind::of(target), &mut |entry, is_dir, own| {
         let path = entry.path();
         let stays = path.strip_prefix(target).is_ok_and(|tail| new.join(tail).exists());
         if own && !stays {

@@ -28,7 +28,7 @@ pub(super) fn refuse(path: &Path, message: &str, help: &str) -> io::Error {
 }
 
 /// What the system refused, with the path and what to do; errors that have both already stay.
-pub(super) fn advise(path: &Path, error: &io::Error) -> io::Error {
+pub fn advise(path: &Path, error: &io::Error) -> io::Error {
     if let Some(refused) = error.get_ref().and_then(|inner| inner.downcast_ref::<Refused>()) {
         return refuse(&refused.path, &refused.message, &refused.help);
     }

@@ -140,21 +140,19 @@ pub fn parse(name: &str, text: String) -> Result<(Table, Arc<Source>), Faults> {
     Ok((table, source))
 }
 
-/// The number with a point, where reading stopped at a comma within a number.
+/// The number with a point, where reading stopped in a line with a comma inside a number: `kp = 6,5`.
 fn decimal_comma(place: &Place) -> Option<String> {
-    let text = place.source.text.as_str();
-    let (before, after) = text.split_at_checked(place.span.start)?;
-    let line = |text: &str| text.rsplit('\n').next().unwrap_or_default().to_owned();
-    let before = line(before);
-    let after = after.lines().next().unwrap_or_default();
-    // Reading stops at the comma or behind it.
-    let (whole, digits) = match after.strip_prefix(',') {
-        Some(digits) => (before.as_str(), digits),
-        None => (before.trim_end().strip_suffix(',')?, after),
-    };
-    let whole = &whole[whole.trim_end_matches(|c: char| c.is_ascii_digit()).len()..];
-    let end = digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
-    (!whole.is_empty() && end > 0).then(|| format!("{whole}.{}", &digits[..end]))
+    let (before, after) = place.source.text.split_at_checked(place.span.start)?;
+    let start = before.rsplit('\n').next()?;
+    let line = format!("{start}{}", after.split('\n').next()?);
+    line.split('=').skip(1).find_map(|value| {
+        let (whole, rest) = value.split_once(',')?;
+        let whole = whole.trim();
+        let digits = rest.split([',', '}', '#']).next()?.trim();
+        let is_number = |text: &str| text.chars().all(|c| c.is_ascii_digit()) && !text.is_empty();
+        (is_number(whole.trim_start_matches(['+', '-'])) && is_number(digits))
+            .then(|| format!("{whole}.{digits}"))
+    })
 }
 
 fn place(source: &Arc<Source>, span: Range<usize>) -> Place {
@@ -233,14 +231,12 @@ pub fn parse_set(argument: &str) -> Result<Table, Faults> {
         }
         Ok(tree) => tree,
     };
-    match table.0.as_slice() {
-        [_] => not_to_set(&table).map(|()| table),
-        _ => {
-            let end = source.text.len();
-            let place = Place { source, span: 0..end };
-            Err(Fault::new(&place, "--set changes one setting at a time").help(example).into())
-        }
+    if table.0.len() != 1 {
+        let end = source.text.len();
+        let place = Place { source, span: 0..end };
+        return Err(Fault::new(&place, "--set changes one setting at a time").help(example).into());
     }
+    not_to_set(&table).map(|()| table)
 }
 
 /// Refuses settings that say which flights there are: they cannot be changed from outside.
@@ -265,6 +261,7 @@ pub fn missing_items(below: &Table, over: &Table, path: &str, faults: &mut Vec<F
         match below.get(&entry.key).map(|node| &node.value) {
             Some(Value::Table(below)) => missing_items(below, above, &field, faults),
             Some(Value::List(items)) => missing_in_list(items, above, &field, faults),
+            None => missing_in_list(&[], above, &field, faults),
             _ => {}
         }
     }
@@ -288,7 +285,7 @@ fn missing_in_list(items: &[Node], over: &Table, field: &str, faults: &mut Vec<F
 
 fn numbers(field: &str, count: usize) -> String {
     match count {
-        0 => format!("there is no {field}"),
+        0 => format!("there is no {field} at all"),
         1 => format!("there is 1 {field}, number 0"),
         n => format!("there are {n} of {field}, numbers 0 to {}", n - 1),
     }

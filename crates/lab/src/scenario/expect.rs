@@ -41,8 +41,9 @@ impl Expectation {
         }
     }
 
-    /// Whether some number from `least` to `most` obeys.
+    /// Whether some number from `least` to `most` obeys, with room for rounding.
     pub fn possible(&self, least: f64, most: f64) -> bool {
+        let most = most * (1.0 + 1e-9);
         match self.rule {
             Rule::Within { value, tolerance } => {
                 value + tolerance >= least && value - tolerance <= most

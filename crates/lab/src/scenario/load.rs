@@ -150,9 +150,13 @@ pub fn load_text(name: &str, shown: &str, text: String, sets: &[String]) -> Resu
             break;
         }
         let mut tree = Table(base.0.iter().filter(|e| e.key != "variant").cloned().collect());
+        let before = faults.len();
         for set in variant.set.into_iter().chain(&sets) {
             missing_items(&tree, set, "", &mut faults);
             tree.overlay(set);
+        }
+        if faults.len() > before {
+            continue;
         }
         let full = variant.name.map_or_else(|| name.to_owned(), |v| format!("{name}:{v}"));
         match read_scenario(full, &tree, &source, variant) {
@@ -193,10 +197,14 @@ fn variants<'a>(base: &'a Table, faults: &mut Vec<Fault>) -> Vec<Variant<'a>> {
         faults.push(fault.help("write [[variant]], with two brackets"));
         return Vec::new();
     };
-    if items.is_empty() || items.len() > MOST_VARIANTS {
-        let message =
-            format!("`variant` has {} variants: must be 1 to {MOST_VARIANTS}", items.len());
-        let help = "take it out, split the file, or let `stormpetrel sweep` draw the flights";
+    if items.is_empty() {
+        let fault = Fault::new(&node.place, "`variant` is empty: there is nothing to fly");
+        faults.push(fault.help("take it out, or write [[variant]] for each flight"));
+        return Vec::new();
+    }
+    if items.len() > MOST_VARIANTS {
+        let message = format!("{} variants: a file has at most {MOST_VARIANTS}", items.len());
+        let help = "split the file, or let `stormpetrel sweep` draw the flights";
         faults.push(Fault::new(&node.place, message).help(help));
         return Vec::new();
     }
@@ -360,7 +368,7 @@ fn bounds(name: &str, duration: f64) -> (f64, f64) {
     match name {
         "estimate.lag" => (f64::NEG_INFINITY, f64::INFINITY),
         "saturation.share" => (0.0, 1.0),
-        "time.flown" | "tilt.inverted_at" => (0.0, duration * (1.0 + 1e-9)),
+        "time.flown" | "tilt.inverted_at" => (0.0, duration),
         _ => (0.0, f64::INFINITY),
     }
 }

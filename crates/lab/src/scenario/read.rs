@@ -84,7 +84,9 @@ impl VisitorMut<f64> for Reader<'_> {
                 }
             }
             Some(Node { place, value: value @ (Value::Text(_) | Value::Flag(_)) }) => {
-                self.faults.push(wrong_type(place, &field, value, meta.unit).help(shape));
+                let fault = wrong_type(place, &field, value, meta.unit);
+                let comma = matches!(value, Value::Text(text) if decimal_point(text).is_some());
+                self.faults.push(if comma { fault } else { fault.help(shape) });
             }
             _ => {}
         }
@@ -234,6 +236,13 @@ pub fn unknown(place: &Place, what: &str, shown: &str, name: &str, known: &[&str
     Fault::new(place, format!("unknown {what} `{shown}`")).help(help)
 }
 
+/// `0,6` with a point.
+fn decimal_point(text: &str) -> Option<String> {
+    let (whole, digits) = text.trim().split_once(',')?;
+    let number = format!("{whole}.{digits}");
+    (!whole.is_empty() && number.parse::<f64>().is_ok()).then_some(number)
+}
+
 /// A value of the wrong kind.
 pub fn wrong_type(place: &Place, field: &str, value: &Value, unit: &str) -> Fault {
     let got = match value {
@@ -253,17 +262,15 @@ pub fn wrong_type(place: &Place, field: &str, value: &Value, unit: &str) -> Faul
     let fault = Fault::new(place, format!("`{field}` is {got}: must be {want}"));
     match value {
         Value::Text(text) if want.starts_with("a number") => {
-            // A comma between digits is a decimal one.
+            if let Some(number) = decimal_point(text) {
+                return fault.help(format!("write {number}: with a point, without quotes"));
+            }
             let digits: String = text
                 .trim()
-                .replace(',', ".")
                 .chars()
                 .take_while(|c| c.is_ascii_digit() || "+-.eE".contains(*c))
                 .collect();
             match digits.parse::<f64>() {
-                Ok(_) if text.contains(',') => {
-                    fault.help(format!("write {digits}: with a point, without quotes and unit"))
-                }
                 Ok(_) => fault.help(format!("write {digits} without quotes and without unit")),
                 Err(_) => fault,
             }

@@ -6,6 +6,7 @@ use stormpetrel_control::record::{Meta, Path, Record, VisitorMut};
 use stormpetrel_control::registry::Settings;
 
 use super::{BlockVisitor, Scenario};
+use crate::campaign::plan;
 
 /// JSON schema (draft 2020-12) of a scenario file: editors complete and check with it.
 pub fn schema() -> Value {
@@ -34,6 +35,8 @@ pub fn schema() -> Value {
             },
         }),
     );
+    properties.insert("campaign".into(), campaign());
+    properties.insert("sweep".into(), sweep());
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Stormpetrel scenario",
@@ -41,6 +44,51 @@ pub fn schema() -> Value {
         "additionalProperties": false,
         "required": ["vehicle", "reference", "position", "actuation"],
         "properties": properties,
+    })
+}
+
+/// The block `campaign`, from its declaration.
+fn campaign() -> Value {
+    let mut writer = Writer::default();
+    let doc = "How many flights `stormpetrel sweep` draws, and how.";
+    writer.plain("campaign", doc, &mut plan::Size::default(), &mut plan::Choices::default());
+    writer.properties.remove("campaign").unwrap_or_default()
+}
+
+/// The tables `[[sweep]]`.
+fn sweep() -> Value {
+    let numbers = |count: usize, doc: &str| {
+        json!({
+            "type": "array", "description": doc, "items": { "type": "number" },
+            "minItems": count, "maxItems": count,
+        })
+    };
+    json!({
+        "type": "array",
+        "description": "What `stormpetrel sweep` varies.",
+        "items": {
+            "type": "object",
+            "additionalProperties": false,
+            "required": ["path"],
+            "properties": {
+                "path": {
+                    "type": ["string", "array"], "items": { "type": "string" },
+                    "description": "Dotted path of the setting, or several that take the same value.",
+                },
+                "name": { "type": "string", "description": "Name of the column; the path unless given." },
+                "relative": {
+                    "type": "boolean",
+                    "description": "Whether the value multiplies the file's own number.",
+                },
+                "uniform": numbers(2, "Evenly between low and high."),
+                "log_uniform": numbers(2, "Evenly in the logarithm between low and high."),
+                "normal": numbers(2, "Mean and standard deviation, cut at four of them."),
+                "grid": numbers(3, "Low, high, and how many values."),
+                "list": {
+                    "type": "array", "description": "These values, numbers or names.", "minItems": 1,
+                },
+            },
+        },
     })
 }
 

@@ -30,7 +30,7 @@ pub(super) fn read(path: &Path, shown: &str) -> Result<String, Faults> {
     let limit = LONGEST as u64 + 1;
     File::open(path).and_then(|file| file.take(limit).read_to_end(&mut bytes)).map_err(broken)?;
     if bytes.len() > LONGEST {
-        let message = format!("more than {LONGEST} bytes: a scenario has at most as many");
+        let message = format!("more than {LONGEST} bytes: too long for a scenario");
         return Err(refuse(&message, "is this a scenario file?"));
     }
     decode(bytes).map_err(|(message, help)| refuse(&message, help))
@@ -54,7 +54,7 @@ fn decode(bytes: Vec<u8>) -> Result<String, (String, &'static str)> {
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let before = error.as_bytes().get(..at).unwrap_or_default();
-        let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
+        let line = before.split(|byte| *byte == b'\n').count();
         let message = format!("byte {at}, in line {line}, is not UTF-8");
         if utf16 {
             return (message, "the file is UTF-16: save it as UTF-8");

@@ -19,8 +19,8 @@ pub(super) fn scale_of_results(sorted: &[f64]) -> Scale {
     }
 }
 
-/// Like [`scale_of_results`], but linear where the values fill a linear axis: drawn evenly from 0 to
-/// 15, the least of many values is tiny and yet no logarithm is wanted.
+/// Logarithmic where the sorted values are positive, span more than a decade and crowd at the low end of
+/// a linear axis: drawn evenly from 0 to 15, the least of many is tiny and yet no logarithm is wanted.
 pub(super) fn scale_of_inputs(sorted: &[f64]) -> Scale {
     let (Some(low), Some(middle), Some(high)) =
         (quantile(sorted, 0.0), quantile(sorted, 0.5), quantile(sorted, 1.0))
@@ -28,7 +28,7 @@ pub(super) fn scale_of_inputs(sorted: &[f64]) -> Scale {
         return Scale::Linear;
     };
     let crowded = middle - low < 0.2 * (high - low);
-    if crowded { scale_of_results(sorted) } else { Scale::Linear }
+    if crowded && low > 0.0 && high > 10.0 * low { Scale::Log } else { Scale::Linear }
 }
 
 /// Bins of equal width on an axis.
