@@ -28,7 +28,7 @@ pub fn sweep(args: &Sweep, common: &Common) -> Result<(), Failure> {
     let shard = shard(args.shard.as_deref())?;
     let until = until(args.until_interval)?;
     let logs = args.logs.iter().map(|text| Which::read(text)).collect::<Result<Vec<_>, _>>()?;
-    let broken = |error: io::Error| Failure::file(&args.out, &error);
+    let broken = |error: io::Error| Failure::out(&args.out, &error);
     let threads = args.threads.map_or_else(cores, usize::from);
     announce(&campaign, shard.1, threads, args, common)?;
     let held = files::holds(&args.out, &campaign).map_err(broken)?;
@@ -50,9 +50,7 @@ pub fn sweep(args: &Sweep, common: &Common) -> Result<(), Failure> {
     };
     let end = fly(&drive, common).map_err(broken)?;
     let End::Complete(flights) = end else {
-        anstream::eprintln!(
-            "stopped; what is flown is kept: the same command with --resume goes on"
-        );
+        terminal::warn("stopped; what is flown is kept: the same command with --resume goes on");
         return Err(Failure::Interrupted);
     };
     if shard.1 > 1 {
@@ -94,7 +92,7 @@ pub fn merge(args: &Merge, common: &Common) -> Result<(), Failure> {
         }
         parts.push(index);
     }
-    let broken = |error: io::Error| Failure::file(&args.out, &error);
+    let broken = |error: io::Error| Failure::out(&args.out, &error);
     fs::create_dir_all(&args.out).map_err(broken)?;
     let _lock = lock(&args.out)?;
     files::begin(&Native, &args.out, &campaign).map_err(broken)?;
@@ -236,7 +234,7 @@ fn allowed(held: Option<bool>, resume: bool, out: &Path) -> Result<(), Failure> 
 /// Keeps every other process out of the folder while it lives.
 fn lock(folder: &Path) -> Result<File, Failure> {
     let path: PathBuf = folder.join(".lock");
-    let broken = |error: io::Error| Failure::file(&path, &error);
+    let broken = |error: io::Error| Failure::out(&path, &error);
     let file = File::create(&path).map_err(broken)?;
     match file.try_lock() {
         Ok(()) => Ok(file),
@@ -282,7 +280,7 @@ fn conclude(
     flights: u64,
     common: &Common,
 ) -> Result<(), Failure> {
-    let broken = |error: io::Error| Failure::file(out, &error);
+    let broken = |error: io::Error| Failure::out(out, &error);
     let summary = files::finish(&Native, out, campaign, parts, flights).map_err(broken)?;
     let command = |sets: &[String]| command("run", plan, sets);
     let again = self::command("sweep", plan, &[]);
@@ -381,7 +379,6 @@ fn refly(
             .flight(&campaign.inputs(index), campaign.seed(index))
             .map_err(|faults| io::Error::other(faults.to_string()))?;
         let folder = stormpetrel_lab::output::Folder::new(&out.join(format!("flights/{index}")))?;
-        terminal::remember(folder.staging());
         crate::run::fly_into(&folder, "", scenario)?;
         folder.publish()?;
     }

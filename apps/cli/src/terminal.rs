@@ -1,7 +1,6 @@
 //! What a person sees: tables that fit, colour and progress on a terminal only.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -19,9 +18,6 @@ pub const BOLD: Style = Style::new().bold();
 
 /// Why nothing more can be said on standard output.
 static LOST: Mutex<Option<io::Error>> = Mutex::new(None);
-
-/// A folder in the making is known from its beginning; nothing is left to do.
-pub fn remember(_staging: &Path) {}
 
 /// Set where the first interrupt must only ask for an end.
 pub static ORDERLY: AtomicBool = AtomicBool::new(false);

@@ -142,7 +142,8 @@ fn closed_loop(name: &str) {
             black_box(fly_batch_at(&batch, width));
         });
         say(&format!(
-            "| eight lanes, {width:?} | {lanes:.1} | {:.2} times | {measured:.1} | {:.2} times |",
+            "| eight lanes, {} | {lanes:.1} | {:.2} times | {measured:.1} | {:.2} times |",
+            width.name(),
             single / lanes,
             with_metrics / measured
         ));
@@ -211,7 +212,7 @@ fn throughput() {
     say("| how | plant alone | closed loop |\n|---|---|---|");
     let rate = |ns: f64| format!("{:.1}", 1e3 / ns);
     let row = |how: &str, plant: f64, closed: f64| {
-        say(&format!("| {how} | {} | {} |", rate(plant), rate(closed)))
+        say(&format!("| {how} | {} | {} |", rate(plant), rate(closed)));
     };
     let plant = best(TICKS, || {
         black_box(Plant { flight, steps: TICKS }.run());

@@ -400,7 +400,9 @@ impl Histogram {
         let bin = bits.saturating_sub(LOWEST_EXPONENT << 6);
         let last = self.bins.len() - 1;
         let bin = usize::try_from(bin).unwrap_or(last);
-        self.bins[if bin < last { bin } else { last }] += 1;
+        if let Some(count) = self.bins.get_mut(if bin < last { bin } else { last }) {
+            *count += 1;
+        }
         self.count += 1;
     }
 
