@@ -103,7 +103,7 @@ pub struct Run {
 /// Which scenario with which changes, of `sweep` and `merge`.
 #[derive(Group)]
 pub struct Plan {
-    /// Scenario file with [[sweep]] tables
+    /// Scenario file that says what to vary in `[[sweep]]` tables
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// Vary this variant of the file
