@@ -24,21 +24,21 @@ use stormpetrel_plant::flight::Flight;
 const TICKS: u64 = 20_000;
 
 /// Steps without log or metrics.
-struct Steps<T> {
-    flight: Flight<T>,
+struct Steps<'a, T> {
+    flight: &'a Flight<T>,
     ticks: u64,
 }
 
-impl<T: Real> Work for Steps<T> {
-    type Output = Flight<T>;
+impl<T: Real> Work for Steps<'_, T> {
+    type Output = T;
     #[inline(always)]
-    fn run(self) -> Flight<T> {
-        let mut flight = self.flight;
+    fn run(self) -> T {
+        let mut flight = *self.flight;
         for _ in 0..self.ticks {
             let tick = flight.decide();
             flight.advance(&tick);
         }
-        flight
+        flight.state.position.x
     }
 }
 
@@ -122,8 +122,9 @@ fn laws() {
 /// One block of the closed loop: single, and eight lanes at each width.
 fn closed_loop(name: &str) {
     let one = scenario(name);
+    let flight = one.flight();
     let single = best(TICKS, || {
-        black_box(Steps { flight: one.flight(), ticks: TICKS }.run());
+        black_box(Steps { flight: &flight, ticks: TICKS }.run());
     });
     let with_metrics = best(TICKS, || {
         black_box(fly(&one, |_, _| {}));
@@ -132,11 +133,10 @@ fn closed_loop(name: &str) {
     say("| how | loop | against single | with metrics | against single |\n|---|---|---|---|---|");
     say(&format!("| single | {single:.1} | 1 | {with_metrics:.1} | 1 |"));
     let batch: Vec<Scenario> = (0..LANES).map(|_| one.clone()).collect();
-    let flight = one.flight();
     let gathered: Flight<Lanes<f64, LANES>> = RecordExt::<f64>::gather([&flight; LANES]);
     for width in Width::available() {
         let lanes = best(TICKS * LANES as u64, || {
-            black_box(width.run(Steps { flight: gathered, ticks: TICKS }));
+            black_box(width.run(Steps { flight: &gathered, ticks: TICKS }));
         });
         let measured = best(TICKS * LANES as u64, || {
             black_box(fly_batch_at(&batch, width));
@@ -218,7 +218,7 @@ fn throughput() {
         black_box(Plant { flight, steps: TICKS }.run());
     });
     let closed = best(TICKS, || {
-        black_box(Steps { flight, ticks: TICKS }.run());
+        black_box(Steps { flight: &flight, ticks: TICKS }.run());
     });
     row("single", plant, closed);
     let lanes = |width: Width| {
@@ -226,7 +226,7 @@ fn throughput() {
             black_box(width.run(Plant { flight: gathered, steps: TICKS }));
         });
         let closed = best(TICKS * LANES as u64, || {
-            black_box(width.run(Steps { flight: gathered, ticks: TICKS }));
+            black_box(width.run(Steps { flight: &gathered, ticks: TICKS }));
         });
         (plant, closed)
     };
@@ -247,7 +247,7 @@ fn throughput() {
         black_box(widest.run(Plant { flight: gathered, steps: TICKS }));
     });
     let closed = on_all(&|| {
-        black_box(widest.run(Steps { flight: gathered, ticks: TICKS }));
+        black_box(widest.run(Steps { flight: &gathered, ticks: TICKS }));
     });
     row(&format!("eight lanes, {}, {threads} threads", widest.name()), plant, closed);
     say(
