@@ -69,15 +69,15 @@ impl Table {
             return;
         }
         for entry in &over.0 {
+            if let Some(below) = self.get_mut(&entry.key) {
+                spread(below, &entry.node.value);
+            }
             match (self.get_mut(&entry.key), &entry.node.value) {
                 (Some(Node { value: Value::Table(below), .. }), Value::Table(above)) => {
                     below.overlay(above);
                 }
                 (Some(Node { value: Value::List(below), .. }), Value::Table(above))
-                    if above
-                        .0
-                        .iter()
-                        .all(|e| e.key.parse::<usize>().is_ok_and(|i| i < below.len())) =>
+                    if above.0.iter().all(|e| place_of(&e.key, below.len()).is_some()) =>
                 {
                     overlay_items(below, above);
                 }
@@ -98,10 +98,29 @@ impl Table {
     }
 }
 
-/// `disturbance.0.force = ...`: a list item by its position.
+/// The axes of a vector, by which the items of a list of three can be named.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The item of a list that a key names: by its position, or by its axis.
+fn place_of(key: &str, length: usize) -> Option<usize> {
+    let axis = || AXES.iter().position(|axis| *axis == key).filter(|_| length == AXES.len());
+    key.parse().ok().or_else(axis).filter(|at| *at < length)
+}
+
+/// One number for all axes becomes one for each where a single axis is about to be changed.
+fn spread(below: &mut Node, above: &Value) {
+    let Value::Table(above) = above else { return };
+    let axes = !above.0.is_empty() && above.0.iter().all(|e| AXES.contains(&e.key.as_str()));
+    if axes && matches!(below.value, Value::Number(..)) {
+        below.value = Value::List(vec![below.clone(); AXES.len()]);
+    }
+}
+
+/// `disturbance.0.force = ...` or `start.offset.x = ...`: a list item by its position or axis.
 fn overlay_items(below: &mut [Node], above: &Table) {
     for entry in &above.0 {
-        let Some(item) = entry.key.parse::<usize>().ok().and_then(|i| below.get_mut(i)) else {
+        let place = place_of(&entry.key, below.len());
+        let Some(item) = place.and_then(|place| below.get_mut(place)) else {
             continue;
         };
         match (&mut item.value, &entry.node.value) {
@@ -288,5 +307,33 @@ fn numbers(field: &str, count: usize) -> String {
         0 => format!("there is no {field} at all"),
         1 => format!("there is 1 {field}, number 0"),
         n => format!("there are {n} of {field}, numbers 0 to {}", n - 1),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The numbers under `key` after an argument was laid over the text.
+    fn after(text: &str, argument: &str, key: &str) -> Vec<f64> {
+        let (mut tree, _) = parse("test", text.to_owned()).expect("TOML");
+        tree.overlay(&parse_set(argument).expect("an argument"));
+        match &tree.get(key).expect("the key").value {
+            Value::List(items) => items
+                .iter()
+                .filter_map(|item| match item.value {
+                    Value::Number(x, _) => Some(x),
+                    _ => None,
+                })
+                .collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    #[test]
+    fn one_axis_leaves_the_others_as_they_are() {
+        assert_eq!(after("kp = [1.0, 2.0, 3.0]", "kp.y=9", "kp"), [1.0, 9.0, 3.0]);
+        assert_eq!(after("kp = 6.0", "kp.z=9", "kp"), [6.0, 6.0, 9.0]);
+        assert_eq!(after("kp = [1.0, 2.0, 3.0]", "kp=[4, 5, 6]", "kp"), [4.0, 5.0, 6.0]);
     }
 }
