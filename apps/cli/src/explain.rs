@@ -78,12 +78,17 @@ fn as_json(entry: &Entry) -> serde_json::Value {
         .iter()
         .map(|c| json!({ "name": c.name, "meaning": c.doc, "values": c.values.iter().map(|(name, doc)| json!({ "name": name, "meaning": doc })).collect::<Vec<_>>() }))
         .collect();
-    json!({ "kind": entry.kind, "name": entry.name, "summary": entry.summary, "text": entry.text, "choices": choices, "numbers": numbers })
+    let tables: Vec<_> = entry
+        .tables
+        .iter()
+        .map(|t| json!({ "name": t.name, "meaning": t.doc, "columns": t.columns.iter().map(|(name, unit)| json!({ "name": name, "unit": unit })).collect::<Vec<_>>() }))
+        .collect();
+    json!({ "kind": entry.kind, "name": entry.name, "summary": entry.summary, "text": entry.text, "choices": choices, "tables": tables, "numbers": numbers })
 }
 
 fn print(entry: &Entry) {
     let bold = terminal::BOLD;
-    let Entry { kind, key, name, summary, text, choices, numbers } = entry;
+    let Entry { kind, key, name, summary, text, choices, tables, numbers } = entry;
     let width = terminal::width();
     terminal::say(&format!("{bold}{name}{bold:#} ({kind})"));
     if text.is_empty() {
@@ -108,6 +113,18 @@ fn print(entry: &Entry) {
                 terminal::say(&terminal::hang(&format!("      \"{value}\" {doc}"), 6, width));
             }
         }
+    }
+    for table in tables {
+        terminal::say(&format!("\n{bold}Table{bold:#}"));
+        let columns: Vec<_> =
+            table.columns.iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
+        let line = format!(
+            "  {}: {} Rows [[...], ...] or the name of a CSV file; columns: {}.",
+            table.name,
+            table.doc,
+            columns.join(", ")
+        );
+        terminal::say(&terminal::hang(&line, 6, width));
     }
     if !numbers.is_empty() {
         terminal::say(&format!("\n{bold}Numbers{bold:#}"));

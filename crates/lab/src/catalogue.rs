@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use stormpetrel_control::options::{OptionVisitor, Options};
+use stormpetrel_control::options::{Cells, OptionVisitor, Options, Shape};
 use stormpetrel_control::record::{Meta, Path, Record, VisitorMut};
 use stormpetrel_control::registry::Settings;
 use stormpetrel_plant::vehicle::VehicleSettings;
@@ -38,6 +38,17 @@ pub struct Choice {
     pub values: Vec<(&'static str, &'static str)>,
 }
 
+/// A table that a file brings along.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// Key in the file.
+    pub name: &'static str,
+    /// Meaning.
+    pub doc: &'static str,
+    /// Names and SI units of its columns.
+    pub columns: Vec<(&'static str, &'static str)>,
+}
+
 /// Something that a scenario can name.
 #[derive(Clone, Debug)]
 pub struct Entry {
@@ -53,6 +64,8 @@ pub struct Entry {
     pub text: String,
     /// Choices.
     pub choices: Vec<Choice>,
+    /// Tables.
+    pub tables: Vec<Table>,
     /// Numbers.
     pub numbers: Vec<Number>,
 }
@@ -75,6 +88,7 @@ fn metric(kind: &'static str, about: &About) -> Entry {
         summary: format!("{} [{}]", about.doc, about.unit),
         text: String::new(),
         choices: Vec::new(),
+        tables: Vec::new(),
         numbers: Vec::new(),
     }
 }
@@ -86,6 +100,7 @@ struct Collector(Vec<Entry>);
 #[derive(Default)]
 struct Block {
     choices: Vec<Choice>,
+    tables: Vec<Table>,
     numbers: Vec<Number>,
 }
 
@@ -120,6 +135,18 @@ impl OptionVisitor for Block {
         self.choices.push(Choice { name, doc: doc.trim(), values });
         current
     }
+
+    fn rows(
+        &mut self,
+        name: &'static str,
+        doc: &'static str,
+        shape: &Shape,
+        current: Cells,
+    ) -> Cells {
+        let columns = shape.columns.iter().map(|column| (column.name, column.unit)).collect();
+        self.tables.push(Table { name, doc: doc.trim(), columns });
+        current
+    }
 }
 
 /// The module documentation at the head of a source text.
@@ -152,7 +179,7 @@ impl Collector {
                 text = format!("{text}\n{ROTORS}");
             }
             let summary = text.lines().next().unwrap_or_default().trim_end_matches('.').to_owned();
-            let Block { choices, numbers } = block;
+            let Block { choices, tables, numbers } = block;
             self.0.push(Entry {
                 kind,
                 key: S::KEY,
@@ -160,6 +187,7 @@ impl Collector {
                 summary,
                 text,
                 choices,
+                tables,
                 numbers,
             });
         }
@@ -185,7 +213,7 @@ impl BlockVisitor for Collector {
         let mut block = Block::default();
         options.visit(&mut block);
         numbers.visit_mut(&Path::ROOT, &Meta::signal("", ""), &mut block);
-        let Block { choices, numbers } = block;
+        let Block { choices, tables, numbers } = block;
         let summary = doc.trim_end_matches('.').to_owned();
         self.0.push(Entry {
             kind: "block",
@@ -194,6 +222,7 @@ impl BlockVisitor for Collector {
             text: doc.to_owned(),
             summary,
             choices,
+            tables,
             numbers,
         });
     }

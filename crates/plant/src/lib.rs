@@ -11,6 +11,7 @@ pub mod dispatch;
 pub mod disturbance;
 pub mod dynamics;
 pub mod flight;
+pub mod random;
 pub mod reference;
 pub mod state;
 pub mod vehicle;

@@ -28,18 +28,7 @@ impl VisitorMut<f64> for Stir {
     }
 }
 
-impl OptionVisitor for Stir {
-    fn choice(
-        &mut self,
-        _: &'static str,
-        _: &'static str,
-        _: &'static [&'static str],
-        _: &'static [&'static str],
-        current: usize,
-    ) -> usize {
-        current
-    }
-}
+impl OptionVisitor for Stir {}
 
 fn reference(name: &str, seed: f64) -> Reference<f64> {
     let mut settings = named::<ReferenceSettings>(name);

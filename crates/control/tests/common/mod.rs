@@ -188,18 +188,7 @@ impl VisitorMut<f64> for Scatter {
     }
 }
 
-impl OptionVisitor for Scatter {
-    fn choice(
-        &mut self,
-        _: &'static str,
-        _: &'static str,
-        _: &'static [&'static str],
-        _: &'static [&'static str],
-        current: usize,
-    ) -> usize {
-        current
-    }
-}
+impl OptionVisitor for Scatter {}
 
 /// The settings with every gain changed by up to a half; gains that were zero come alive.
 pub fn scattered<S: Settings>(mut settings: S, seed: u64) -> S {

@@ -69,7 +69,7 @@ pub fn settings(node: &Node, faults: &mut Vec<Fault>) -> (Size<f64>, Choices) {
     let mut reader = Reader::new("campaign", table);
     size.visit_mut(&Name::ROOT, &Meta::signal("", ""), &mut reader);
     choices.visit(&mut reader);
-    faults.extend(reader.finish());
+    faults.extend(reader.finish(&node.place));
     (size, choices)
 }
 

@@ -1,39 +1,13 @@
-//! Random numbers from counters: what a flight draws depends on the master seed, its index and the name
-//! of the draw, and on nothing that was drawn before.
-//!
-//!   mix: the finaliser of SplitMix64, variant 13                         (1)
-//!   key(a, b) = mix(mix(a + g) ^ b),   g = 2^64/golden ratio             (2)
-//!   u = (k >> 11) 2^-53 + 2^-54, in the open interval 0 to 1             (3)
+//! What a plan draws: on top of the plant's counters, a permutation and the normal quantile.
 //!
 //! A permutation of 0..n is a Feistel network of four rounds on the next power of four, walked until the
 //! result lies below n: no table, whatever n is.
 //!
-//! Source: Steele, Lea and Flood, OOPSLA 2014; D. Stafford, "Better bit mixing" (2011); Black and
-//! Rogaway, "Ciphers with arbitrary finite domains" (2002); normal quantile: Wichura, AS 241 (1988).
+//! Source: Black and Rogaway, "Ciphers with arbitrary finite domains" (2002); normal quantile: Wichura,
+//! AS 241 (1988).
 
 use stormpetrel_control::real::Real;
-
-/// Mixes the bits of a word (1).
-fn mix(mut z: u64) -> u64 {
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
-}
-
-/// A key from a key and a number (2).
-pub fn key(a: u64, b: u64) -> u64 {
-    mix(mix(a.wrapping_add(0x9E37_79B9_7F4A_7C15)) ^ b)
-}
-
-/// A key from a key and a name.
-pub fn named(a: u64, name: &str) -> u64 {
-    name.bytes().fold(key(a, name.len() as u64), |state, byte| key(state, byte.into()))
-}
-
-/// A number between 0 and 1, never either (3).
-pub fn unit(key: u64) -> f64 {
-    ((key >> 11) as f64 + 0.5) * (1.0 / 9_007_199_254_740_992.0)
-}
+pub use stormpetrel_plant::random::{key, named, unit};
 
 /// Where a permutation of 0..n, chosen by `key`, sends `i`.
 pub fn permuted(i: u64, n: u64, permutation: u64) -> u64 {

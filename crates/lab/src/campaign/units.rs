@@ -30,18 +30,7 @@ impl VisitorMut<f64> for Search<'_> {
     }
 }
 
-impl OptionVisitor for Search<'_> {
-    fn choice(
-        &mut self,
-        _: &'static str,
-        _: &'static str,
-        _: &'static [&'static str],
-        _: &'static [&'static str],
-        current: usize,
-    ) -> usize {
-        current
-    }
-}
+impl OptionVisitor for Search<'_> {}
 
 impl BlockVisitor for Search<'_> {
     fn block<S: Settings>(&mut self, key: &'static str, _: &'static str, settings: &mut S) {

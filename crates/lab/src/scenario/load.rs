@@ -503,7 +503,7 @@ impl Loader<'_> {
         let mut reader = Reader::new(field, table);
         reader.knows(S::KEY);
         settings.settings(&mut reader);
-        self.faults.extend(reader.finish());
+        self.faults.extend(reader.finish(place));
         Some(settings)
     }
 
@@ -601,7 +601,7 @@ impl BlockVisitor for Loader<'_> {
         let mut reader = Reader::new(key, &table);
         options.visit(&mut reader);
         numbers.visit_mut(&Name::ROOT, &Meta::signal("", ""), &mut reader);
-        self.faults.extend(reader.finish());
+        self.faults.extend(reader.finish(&node.place));
         self.judge(key, before);
     }
 }

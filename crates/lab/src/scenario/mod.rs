@@ -6,6 +6,7 @@ pub mod fault;
 mod load;
 pub mod read;
 mod resolve;
+mod rows;
 mod schema;
 mod source;
 

@@ -1,16 +1,19 @@
 //! From the tree to the settings: every number and option asks the file for its value.
 
-use stormpetrel_control::options::OptionVisitor;
+use stormpetrel_control::options::{Cells, OptionVisitor, Shape};
 use stormpetrel_control::record::{Meta, Path, VisitorMut};
 
 use super::document::{Node, Table, Value};
 use super::fault::{Fault, Place};
+use super::rows;
 
 /// Reads one block: a table whose keys are numbers, vectors and options.
 pub struct Reader<'a> {
     block: &'a str,
     table: &'a Table,
     known: Vec<&'static str>,
+    /// Tables that must be given and are not, each with how to write it.
+    missing: Vec<(&'static str, String)>,
     /// What was found wrong.
     pub faults: Vec<Fault>,
 }
@@ -18,7 +21,7 @@ pub struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// A reader of `table`, which stands under the name `block`.
     pub fn new(block: &'a str, table: &'a Table) -> Self {
-        Self { block, table, known: Vec::new(), faults: Vec::new() }
+        Self { block, table, known: Vec::new(), missing: Vec::new(), faults: Vec::new() }
     }
 
     /// Declares a key that somebody else reads.
@@ -26,8 +29,12 @@ impl<'a> Reader<'a> {
         self.known.push(key);
     }
 
-    /// Refuses every key that nobody asked for.
-    pub fn finish(mut self) -> Vec<Fault> {
+    /// Refuses every key that nobody asked for, and a block at `place` without a table that it needs.
+    pub fn finish(mut self, place: &Place) -> Vec<Fault> {
+        for (name, help) in std::mem::take(&mut self.missing) {
+            let message = format!("`{}` is missing", self.field(name));
+            self.faults.push(Fault::new(place, message).help(help));
+        }
         for entry in &self.table.0 {
             if !self.known.iter().any(|known| *known == entry.key) {
                 let field = format!("{}.{}", self.block, entry.key);
@@ -104,7 +111,7 @@ impl VisitorMut<f64> for Reader<'_> {
         });
         let field = self.field(written.unwrap_or(&dotted));
         match &node.value {
-            Value::Number(x, whole) => match refuse(&field, *x, *whole, meta) {
+            Value::Number(x, whole) => match refuse(&field, *x, *whole, meta.unit, meta.range) {
                 None => *value = *x,
                 Some((message, help)) => {
                     let fault = Fault { help, ..Fault::new(&node.place, message) };
@@ -162,23 +169,49 @@ impl OptionVisitor for Reader<'_> {
             current
         })
     }
+
+    fn rows(
+        &mut self,
+        name: &'static str,
+        _: &'static str,
+        shape: &Shape,
+        current: Cells,
+    ) -> Cells {
+        self.known.push(name);
+        let node = self.table.get(name);
+        let fewest = shape.rows.0;
+        match node {
+            Some(node) => rows::read(&self.field(name), node, shape, &mut self.faults),
+            None if current.cells.is_empty() && fewest > 0 => {
+                self.missing.push((name, rows::how(name, shape)));
+                None
+            }
+            None => None,
+        }
+        .unwrap_or(current)
+    }
 }
 
 /// Why a number cannot be taken, and what may have been meant.
-fn refuse(field: &str, x: f64, whole: bool, meta: &Meta) -> Option<(String, Option<String>)> {
-    let (lo, hi) = meta.range;
-    let unit = if meta.unit == "1" { String::new() } else { format!(" {}", meta.unit) };
-    let range = format!("{} to {}{unit}", scientific(lo), scientific(hi));
+pub(super) fn refuse(
+    field: &str,
+    x: f64,
+    whole: bool,
+    unit: &str,
+    (lo, hi): (f64, f64),
+) -> Option<(String, Option<String>)> {
+    let shown = if unit == "1" { String::new() } else { format!(" {unit}") };
+    let range = format!("{} to {}{shown}", scientific(lo), scientific(hi));
     if !x.is_finite() {
         return Some((format!("`{field}` = {x}: must be a finite number from {range}"), None));
     }
-    if meta.unit == "count" && !whole && x.fract() != 0.0 {
+    if unit == "count" && !whole && x.fract() != 0.0 {
         return Some((format!("`{field}` = {x}: must be a whole number"), None));
     }
     if x >= lo && x <= hi {
         return None;
     }
-    Some((format!("`{field}` = {}: must lie in {range}", scientific(x)), slip(x, meta)))
+    Some((format!("`{field}` = {}: must lie in {range}", scientific(x)), slip(x, unit, (lo, hi))))
 }
 
 /// A number as a human would write it: very large and very small ones with a power of ten.
@@ -188,8 +221,8 @@ pub fn scientific(x: f64) -> String {
 }
 
 /// The unit that was probably meant, if the number fits in it.
-fn slip(x: f64, meta: &Meta) -> Option<String> {
-    let (other, factor) = match meta.unit {
+fn slip(x: f64, unit: &str, (lo, hi): (f64, f64)) -> Option<String> {
+    let (other, factor) = match unit {
         "kg" => ("grams", 1e-3),
         "m" => ("millimetres", 1e-3),
         "s" => ("milliseconds", 1e-3),
@@ -199,8 +232,8 @@ fn slip(x: f64, meta: &Meta) -> Option<String> {
         _ => return None,
     };
     let meant = x * factor;
-    let fits = meant >= meta.range.0 && meant <= meta.range.1;
-    fits.then(|| format!("{x} {other}? write {} ({})", round(meant), meta.unit))
+    let fits = meant >= lo && meant <= hi;
+    fits.then(|| format!("{x} {other}? write {} ({unit})", round(meant)))
 }
 
 /// Five significant digits, as a human would write them.
@@ -256,6 +289,8 @@ pub fn wrong_type(place: &Place, field: &str, value: &Value, unit: &str) -> Faul
         "" => "a table".to_owned(),
         "text" => "a text".to_owned(),
         "tables" => "a list of tables".to_owned(),
+        "rows" => "a list of rows, or the name of a CSV file".to_owned(),
+        "row" => "a list of numbers".to_owned(),
         "1" | "count" => "a number".to_owned(),
         unit => format!("a number in {unit}"),
     };

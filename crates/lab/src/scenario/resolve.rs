@@ -1,7 +1,7 @@
 //! A scenario written out with every default, and the part of it that a batch must share.
 
 use serde_json::{Map, Value, json};
-use stormpetrel_control::options::{OptionVisitor, Options};
+use stormpetrel_control::options::{Cells, OptionVisitor, Options, Shape};
 use stormpetrel_control::record::{Meta, Path, Record, VisitorMut};
 use stormpetrel_control::registry::Settings;
 use stormpetrel_plant::vehicle::VehicleSettings;
@@ -105,6 +105,21 @@ impl OptionVisitor for Block {
         let chosen = names.get(current).copied().unwrap_or_default();
         self.values.insert(name.to_owned(), json!(chosen));
         self.choices += &format!(" {name}={chosen}");
+        current
+    }
+
+    fn rows(
+        &mut self,
+        name: &'static str,
+        _: &'static str,
+        shape: &Shape,
+        current: Cells,
+    ) -> Cells {
+        let rows: Vec<_> = current.cells.chunks(shape.columns.len()).collect();
+        let value = if current.file.is_empty() { json!(rows) } else { json!(current.file) };
+        self.values.insert(name.to_owned(), value);
+        // Equal tables are kept once, so their place tells them apart.
+        self.choices += &format!(" {name}={:p}", current.cells);
         current
     }
 }

@@ -1,7 +1,7 @@
 //! The JSON schema of scenario files, from the same declarations that the laws are made of.
 
 use serde_json::{Map, Value, json};
-use stormpetrel_control::options::{OptionVisitor, Options};
+use stormpetrel_control::options::{Cells, OptionVisitor, Options, Shape};
 use stormpetrel_control::record::{Meta, Path, Record, VisitorMut};
 use stormpetrel_control::registry::Settings;
 
@@ -190,6 +190,41 @@ impl OptionVisitor for Block {
                 "description": format!("{} {}", doc.trim(), lines.join(" ")),
                 "enum": values,
                 "default": names.get(current),
+            }),
+        );
+        current
+    }
+
+    fn rows(
+        &mut self,
+        name: &'static str,
+        doc: &'static str,
+        shape: &Shape,
+        current: Cells,
+    ) -> Cells {
+        let columns = shape.columns.iter();
+        let head: Vec<_> = columns.map(|c| format!("{} [{}]", c.name, c.unit)).collect();
+        let cells: Vec<_> = (shape.columns.iter().map(|c| c.range))
+            .map(|(lo, hi)| json!({ "type": "number", "minimum": lo, "maximum": hi }))
+            .collect();
+        let count = cells.len();
+        self.0.insert(
+            name.to_owned(),
+            json!({
+                "description": format!(
+                    "{} Rows of {}, or the name of a CSV file with these columns.",
+                    doc.trim(),
+                    head.join(", "),
+                ),
+                "oneOf": [
+                    {
+                        "type": "array", "minItems": shape.rows.0, "maxItems": shape.rows.1,
+                        "items": {
+                            "type": "array", "prefixItems": cells, "minItems": count, "maxItems": count,
+                        },
+                    },
+                    { "type": "string" },
+                ],
             }),
         );
         current

@@ -36,6 +36,22 @@ pub(super) fn read(path: &Path, shown: &str) -> Result<String, Faults> {
     decode(bytes).map_err(|(message, help)| refuse(&message, help))
 }
 
+/// Largest CSV file that is read, in bytes.
+pub(super) const MOST_BYTES_OF_TABLE: u64 = 1 << 26;
+
+/// The text of a CSV file, or why it cannot be had.
+pub(super) fn table(path: &Path) -> Result<String, String> {
+    let size = std::fs::metadata(path).map_err(|error| error.to_string())?;
+    if !size.is_file() {
+        return Err("is not a file".into());
+    }
+    if size.len() > MOST_BYTES_OF_TABLE {
+        return Err(format!("{} bytes: too long", size.len()));
+    }
+    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+    decode(bytes).map_err(|(message, _)| message)
+}
+
 /// Pipes, and terminals and the like behind `/dev/stdin`.
 #[cfg(unix)]
 fn is_stream(kind: std::fs::FileType) -> bool {
