@@ -102,6 +102,12 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
         self.last
     }
 
+    /// The last command that was granted.
+    #[inline(always)]
+    pub fn held(&self) -> L::Command {
+        self.last
+    }
+
     /// Grants what is good of the command, within the limit, and mends the rest.
     #[cold]
     #[inline(never)]

@@ -28,12 +28,13 @@ pub trait Settings: Copy + Sized + 'static {
 /// `"name" => Type in module;` is the line to add for a new one. The module must offer `Gains<T>` (a
 /// record), `Options`, and `Type::new(Gains<T>, Options, &Context<T>)`. The macro writes the module
 /// declarations, the enum, its settings, the walk over its numbers, and hands the list of variants
-/// to `dispatch`, a macro which implements the trait.
+/// to `dispatch`, a macro which implements the trait. A registry whose kinds are many and rarely asked says
+/// `apart` behind it: its walks are functions of their own, which keeps the loop small.
 #[macro_export]
 macro_rules! registry {
     (
         $(#[$m:meta])* pub enum $name:ident / $settings:ident keyed $key:literal from $context:ident;
-        dispatch $dispatch:ident ($($signature:tt)*);
+        dispatch $dispatch:ident ($($signature:tt)*) $($apart:ident)?;
         $( $tag:literal => $variant:ident in $module:ident; )+
     ) => {
         $( pub mod $module; )+
@@ -93,17 +94,24 @@ macro_rules! registry {
             }
         }
 
+        $crate::registry! { @inline [$($apart)?] $name [$($variant $module)+] }
+
+        $dispatch! { $name [$($variant)+] ($($signature)*) }
+    };
+    (@inline [] $($rest:tt)*) => { $crate::registry! { @record inline(always) $($rest)* } };
+    (@inline [apart] $($rest:tt)*) => { $crate::registry! { @record inline(never) $($rest)* } };
+    (@record $inline:meta $name:ident [$($variant:ident $module:ident)+]) => {
         impl<T: $crate::real::Real> $crate::record::Record<T> for $name<T> {
             type With<U: $crate::real::Real> = $name<U>;
-            #[inline(always)]
+            #[$inline]
             fn visit(&self, path: &$crate::record::Path<'_>, meta: &$crate::record::Meta, v: &mut impl $crate::record::Visitor<T>) {
                 match self { $( Self::$variant(law) => law.visit(path, meta, v), )+ }
             }
-            #[inline(always)]
+            #[$inline]
             fn visit_mut(&mut self, path: &$crate::record::Path<'_>, meta: &$crate::record::Meta, v: &mut impl $crate::record::VisitorMut<T>) {
                 match self { $( Self::$variant(law) => law.visit_mut(path, meta, v), )+ }
             }
-            #[inline(always)]
+            #[$inline]
             fn zip<const M: usize, U: $crate::real::Real>(rows: [&Self; M], f: &mut impl FnMut([T; M]) -> U) -> $name<U> {
                 match rows[0] { $( Self::$variant(first) => {
                     // A batch has one structure; a stray row counts as the first.
@@ -112,11 +120,11 @@ macro_rules! registry {
                     $name::$variant($crate::record::Record::zip(rows, f))
                 } )+ }
             }
-            #[inline(always)]
+            #[$inline]
             fn pick_lane(&self, i: usize) -> $name<T::Scalar> {
                 match self { $( Self::$variant(law) => $name::$variant(law.pick_lane(i)), )+ }
             }
-            #[inline(always)]
+            #[$inline]
             fn put_mapped<U: $crate::real::Real<Scalar = T>>(&self, batch: &mut $name<U>, i: usize, f: &mut impl FnMut(T) -> T) {
                 match (self, batch) {
                     $( (Self::$variant(one), $name::$variant(batch)) => one.put_mapped(batch, i, f), )+
@@ -125,16 +133,14 @@ macro_rules! registry {
                     _ => {}
                 }
             }
-            #[inline(always)]
+            #[$inline]
             fn each_variable(&self, f: &mut impl FnMut(T)) {
                 match self { $( Self::$variant(law) => law.each_variable(f), )+ }
             }
-            #[inline(always)]
+            #[$inline]
             fn finite(&self) -> T::Mask {
                 match self { $( Self::$variant(law) => law.finite(), )+ }
             }
         }
-
-        $dispatch! { $name [$($variant)+] ($($signature)*) }
     };
 }

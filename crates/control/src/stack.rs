@@ -21,6 +21,42 @@ pub enum Exit {
     Thrust,
 }
 
+/// After how many control steps each level acts again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rhythm {
+    /// Position law and observer.
+    pub position: u32,
+    /// Attitude reference and attitude law.
+    pub attitude: u32,
+    /// Rate law.
+    pub rate: u32,
+}
+
+impl Default for Rhythm {
+    /// Every level at every step.
+    fn default() -> Self {
+        Self { position: 1, attitude: 1, rate: 1 }
+    }
+}
+
+impl Rhythm {
+    /// After how many control steps the pattern begins again.
+    pub fn period(self) -> u64 {
+        [self.position, self.attitude, self.rate]
+            .into_iter()
+            .fold(1, |period, every| lcm(period, u64::from(every.max(1))))
+    }
+}
+
+/// Least common multiple.
+fn lcm(a: u64, b: u64) -> u64 {
+    let (mut x, mut y) = (a, b);
+    while y != 0 {
+        (x, y) = (y, x % y);
+    }
+    a / x.max(1) * b
+}
+
 record! {
     /// What every level asked for at one tick.
     pub struct Command {
@@ -48,9 +84,15 @@ record! {
         attitude: Guarded<T, AttitudeLaw<T>, Rate<T>> [];
         /// Rate law.
         rate: Guarded<T, RateLaw<T>, Wrench<T>> [];
+        /// What drove the vehicle since the position law acted, summed.
+        applied: Applied<T> [];
         structure {
             /// Down to which level the stack commands.
             exit: Exit;
+            /// How often each level acts.
+            every: Rhythm;
+            /// Control steps since the start.
+            step: u64;
         }
     }
 }
@@ -72,15 +114,24 @@ pub struct Laws<T> {
 
 impl<T: Real> Stack<T> {
     /// The stack of these laws, at rest.
-    pub fn new(laws: Laws<T>, exit: Exit) -> Self {
+    pub fn new(laws: Laws<T>, exit: Exit, every: Rhythm) -> Self {
         Self {
             position: Guarded::new(laws.position, Thrust::default()),
             observer: GuardedObserver::new(laws.observer),
             attitude_reference: Guarded::new(laws.attitude_reference, Attitude::default()),
             attitude: Guarded::new(laws.attitude, Rate::default()),
             rate: Guarded::new(laws.rate, Wrench::default()),
+            applied: Applied::default(),
             exit,
+            every,
+            step: 0,
         }
+    }
+
+    /// Whether a level acts at this step.
+    #[inline(always)]
+    fn due(&self, every: u32) -> bool {
+        every == 1 || self.step.is_multiple_of(u64::from(every))
     }
 
     /// The commands of all levels at this tick. Total: see [`Guarded`].
@@ -91,25 +142,54 @@ impl<T: Real> Stack<T> {
         trajectory: &Trajectory<T>,
         dt: T,
     ) -> Command<T> {
+        let Rhythm { position: slow, attitude: middle, rate: fast } = self.every;
+        let longer = |every: u32| if every == 1 { dt } else { dt * T::lit(f64::from(every)) };
         let input = good_input(measurement, dt);
-        self.observer.correct_checked(input, measurement, dt);
-        let position = input.and(finite(trajectory));
-        let mut thrust = self.position.update_checked(position, measurement, trajectory, dt);
+        let mut thrust = if self.due(slow) {
+            let dt = longer(slow);
+            self.observer.correct_checked(input, measurement, dt);
+            let position = input.and(finite(trajectory));
+            self.position.update_checked(position, measurement, trajectory, dt)
+        } else {
+            self.position.held()
+        };
         thrust.force -= self.observer.estimate();
         if self.exit == Exit::Thrust {
             return Command { thrust, ..Command::default() };
         }
         // What a guard or the observer grants is finite: the levels below need not ask again.
-        let attitude = self.attitude_reference.update_checked(input, measurement, &thrust, dt);
-        let rate = self.attitude.update_checked(input, measurement, &attitude, dt);
-        let wrench = self.rate.update_checked(input, measurement, &rate, dt);
+        let (attitude, rate) = if self.due(middle) {
+            let dt = longer(middle);
+            let attitude = self.attitude_reference.update_checked(input, measurement, &thrust, dt);
+            (attitude, self.attitude.update_checked(input, measurement, &attitude, dt))
+        } else {
+            (self.attitude_reference.held(), self.attitude.held())
+        };
+        let wrench = if self.due(fast) {
+            self.rate.update_checked(input, measurement, &rate, longer(fast))
+        } else {
+            self.rate.held()
+        };
         Command { thrust, attitude, rate, wrench }
     }
 
     /// Tells the observer what drove the vehicle in the interval just commanded.
     #[inline(always)]
     pub fn advance(&mut self, applied: &Applied<T>, dt: T) {
-        self.observer.advance(applied, dt);
+        self.step += 1;
+        let slow = self.every.position;
+        if slow == 1 {
+            return self.observer.advance(applied, dt);
+        }
+        self.applied.commanded += applied.commanded;
+        self.applied.measured += applied.measured;
+        if self.due(slow) {
+            let share = T::lit(1.0 / f64::from(slow));
+            let Applied { commanded, measured } = self.applied;
+            let mean = Applied { commanded: commanded * share, measured: measured * share };
+            self.observer.advance(&mean, dt * T::lit(f64::from(slow)));
+            self.applied = Applied::default();
+        }
     }
 
     /// The disturbance estimate that the next command subtracts, m/s^2.
@@ -135,5 +215,7 @@ impl<T: Real> Stack<T> {
         self.attitude_reference.reset(measurement);
         self.attitude.reset(measurement);
         self.rate.reset(measurement);
+        self.applied = Applied::default();
+        self.step = 0;
     }
 }

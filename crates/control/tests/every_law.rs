@@ -147,7 +147,11 @@ fn eight_stacks_have_the_bits_of_eight_single_ones() {
                 attitude: scattered(attitudes[n % attitudes.len()].1, i).build(&m),
                 rate: scattered(rates[n % rates.len()].1, i).build(&m),
             };
-            Stack::new(laws, stormpetrel_control::stack::Exit::Wrench)
+            Stack::new(
+                laws,
+                stormpetrel_control::stack::Exit::Wrench,
+                stormpetrel_control::stack::Rhythm::default(),
+            )
         });
         let mut lanes: Stack<Wide> =
             RecordExt::<f64>::gather(core::array::from_fn(|i| &singles[i]));

@@ -24,7 +24,7 @@ use stormpetrel_control::position::PositionSettings;
 use stormpetrel_control::rate::RateLawSettings;
 use stormpetrel_control::record::{Record, RecordExt};
 use stormpetrel_control::signals::{Applied, Measurement, Trajectory, Wrench};
-use stormpetrel_control::stack::{Command, Exit, Laws, Stack};
+use stormpetrel_control::stack::{Command, Exit, Laws, Rhythm, Stack};
 
 const DT: f64 = 1e-3;
 const TICKS: u32 = 2000;
@@ -82,7 +82,7 @@ fn apart(a: &impl Record<f64>, b: &impl Record<f64>) -> f64 {
 
 /// Largest difference of the two stacks at each level, relative to the largest command there.
 fn differences(laws: Laws<f64>) -> [f64; 4] {
-    let mut double = Stack::new(laws, Exit::Wrench);
+    let mut double = Stack::new(laws, Exit::Wrench, Rhythm::default());
     double.reset(&measurement(0.0));
     let mut half: Stack<f32> = single(&double);
     let (mut off, mut size) = ([0.0; 4], [0.0; 4]);

@@ -26,7 +26,7 @@ pub fn fly_alike(scenarios: &[&Scenario], width: Width, attitude: bool) -> Vec<O
     let mut batch = Batch::new(first, attitude && first.has_attitude());
     loop {
         batch.board(scenarios, &mut waiting);
-        if batch.seats.iter().all(Option::is_none) {
+        if batch.seats.iter().all(Option::is_none) && waiting.is_empty() {
             break;
         }
         batch = width.run(Segment(batch));
@@ -53,6 +53,8 @@ struct Batch {
     /// 1 where a lane is taken.
     taken: Wide,
     seats: [Option<Seat>; LANES],
+    /// Tick at which a waiting flight can board.
+    until: u64,
 }
 
 impl Batch {
@@ -65,11 +67,20 @@ impl Batch {
             setting: Setting { has_attitude: attitude, ..setting(scenario) },
             taken: Wide::zero(),
             seats: [const { None }; LANES],
+            until: u64::MAX,
         }
     }
 
-    /// Fills the empty lanes.
+    /// Fills the empty lanes, where the slower loops begin their round.
     fn board(&mut self, scenarios: &[&Scenario], waiting: &mut VecDeque<usize>) {
+        let period = self.flight.period();
+        self.until = u64::MAX;
+        if !self.flight.tick.is_multiple_of(period) {
+            if !waiting.is_empty() && self.seats.iter().any(Option::is_none) {
+                self.until = self.flight.tick.next_multiple_of(period);
+            }
+            return;
+        }
         for lane in 0..LANES {
             if self.seats[lane].is_some() {
                 continue;
@@ -117,8 +128,7 @@ impl Work for Segment {
 
     #[inline(always)]
     fn run(self) -> Batch {
-        let Batch { mut flight, mut sums, setting, taken, mut seats } = self.0;
-        let mut until = u64::MAX;
+        let Batch { mut flight, mut sums, setting, taken, mut seats, mut until } = self.0;
         for seat in seats.iter().flatten() {
             if seat.end < until {
                 until = seat.end;
@@ -134,6 +144,6 @@ impl Work for Segment {
             }
             flight.advance(&tick);
         }
-        Batch { flight, sums, setting, taken, seats }
+        Batch { flight, sums, setting, taken, seats, until }
     }
 }

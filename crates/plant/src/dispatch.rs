@@ -3,6 +3,11 @@
 //! An ordinary build aims at every x86-64 processor; what runs under [`Width::run`] is compiled once
 //! more for AVX2 and once more for AVX-512. The bits are the same in all three: no operation is
 //! contracted or reordered.
+//!
+//! Large blocks that a plain flight does not need, such as the whole world, are functions of their own
+//! with a boundary of their own ([`wide`]): inlined everywhere they would take minutes to compile.
+
+use stormpetrel_control::real::Real;
 
 /// Work to be compiled for each width.
 ///
@@ -16,7 +21,19 @@ pub trait Work {
     fn run(self) -> Self::Output;
 }
 
+/// Does the work of a block of its own: on the widest registers where `T` has several lanes, as it is for
+/// a single vehicle.
+#[inline(always)]
+pub fn wide<T: Real, W: Work>(work: W) -> W::Output {
+    #[cfg(feature = "std")]
+    if T::LANES > 1 {
+        return Width::widest().run(work);
+    }
+    work.run()
+}
+
 /// How wide the registers are that a loop over lanes may use.
+#[cfg(feature = "std")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
     /// What every machine of the target has: two doubles on x86-64 (SSE2).
@@ -27,6 +44,7 @@ pub enum Width {
     Avx512,
 }
 
+#[cfg(feature = "std")]
 impl Width {
     /// What this machine can do, widest first.
     pub fn available() -> impl Iterator<Item = Self> {
@@ -88,10 +106,10 @@ impl Width {
 }
 
 /// [`Work`] in the form in which `pulp` inlines it.
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
 struct Inlined<W>(W);
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
 impl<W: Work> pulp::NullaryFnOnce for Inlined<W> {
     type Output = W::Output;
     #[inline(always)]

@@ -15,6 +15,7 @@ use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
 
 use crate::actuation::Actuate;
+use crate::sling::Sling;
 use crate::state::{Derivative, State};
 use crate::vehicle::Vehicle;
 
@@ -55,6 +56,15 @@ impl<T: Real> Reciprocals<T> {
     }
 }
 
+impl<T: Real> Push<T> {
+    /// Both together.
+    #[inline(always)]
+    pub fn add(&mut self, other: &Self) {
+        self.force += other.force;
+        self.torque += other.torque;
+    }
+}
+
 record! {
     /// What stays constant over a control tick, prepared once.
     pub struct Held {
@@ -62,16 +72,40 @@ record! {
         push_per_mass: Vec3<T, World> [m/s^2];
         /// Disturbance torque.
         torque: Vec3<T, Body> [N m];
+        /// Reciprocal mass.
+        per_mass: T [1/kg];
         /// Reciprocal moments of inertia.
         per_inertia: Vec3<T, Body> [1/(kg m^2)];
+        /// Wind.
+        wind: Vec3<T, World> [m/s];
+        /// What hangs from the vehicle.
+        sling: Sling<T> [];
+        /// Mass without over mass with a payload.
+        share: T [1];
+        /// Centre of mass from the rotors' centre, payload included.
+        shift: Vec3<T, Body> [m];
+        structure {
+            /// Whether the centre of mass may lie off the rotors' centre.
+            laden: bool;
+            /// Whether the air acts on the body.
+            airy: bool;
+            /// Whether something hangs from it.
+            hangs: bool;
+        }
     }
 }
 
 impl<T: Real> Held<T> {
-    /// For this vehicle and push.
+    /// For this vehicle and push, in air that does not act and with nothing on a cable.
     #[inline(always)]
     pub fn new(per: &Reciprocals<T>, push: &Push<T>) -> Self {
-        Held { push_per_mass: push.force * per.mass, torque: push.torque, per_inertia: per.inertia }
+        Held {
+            push_per_mass: push.force * per.mass,
+            torque: push.torque,
+            per_mass: per.mass,
+            per_inertia: per.inertia,
+            ..Held::default()
+        }
     }
 }
 
@@ -83,26 +117,39 @@ pub fn derivative<T: Real>(
     actuation: &impl Actuate<T>,
     held: &Held<T>,
 ) -> Derivative<T> {
-    let omega = state.rate;
-    let q = state.attitude;
-    let half = omega * T::lit(0.5);
     let torque = actuation.torque(state) + held.torque;
-    let gyroscopic = omega.cross(omega.scale(vehicle.inertia));
+    let thrust = actuation.thrust_per_mass(state, vehicle);
     Derivative {
-        position: state.velocity, // (1)
-        velocity: acceleration(
-            actuation.thrust_per_mass(state, vehicle),
-            held.push_per_mass,
-            vehicle.gravity,
-        ), // (2)
-        attitude: [
-            -(q.x * half.x + q.y * half.y + q.z * half.z),
-            q.w * half.x + q.y * half.z - q.z * half.y,
-            q.w * half.y + q.z * half.x - q.x * half.z,
-            q.w * half.z + q.x * half.y - q.y * half.x,
-        ], // (3)
-        rate: (torque - gyroscopic).scale(held.per_inertia), // (4)
+        position: state.velocity,                                            // (1)
+        velocity: acceleration(thrust, held.push_per_mass, vehicle.gravity), // (2)
+        attitude: quaternion_rate(state),                                    // (3)
+        rate: angular_acceleration(state, vehicle, held, torque),            // (4)
     }
+}
+
+/// Derivative of the quaternion (3).
+#[inline(always)]
+pub fn quaternion_rate<T: Real>(state: &State<T>) -> [T; 4] {
+    let (q, half) = (state.attitude, state.rate * T::lit(0.5));
+    [
+        -(q.x * half.x + q.y * half.y + q.z * half.z),
+        q.w * half.x + q.y * half.z - q.z * half.y,
+        q.w * half.y + q.z * half.x - q.x * half.z,
+        q.w * half.z + q.x * half.y - q.y * half.x,
+    ]
+}
+
+/// Angular acceleration under this torque (4).
+#[inline(always)]
+pub fn angular_acceleration<T: Real>(
+    state: &State<T>,
+    vehicle: &Vehicle<T>,
+    held: &Held<T>,
+    torque: Vec3<T, Body>,
+) -> Vec3<T, Body> {
+    let omega = state.rate;
+    let gyroscopic = omega.cross(omega.scale(vehicle.inertia));
+    (torque - gyroscopic).scale(held.per_inertia)
 }
 
 /// One Runge-Kutta step of `h` seconds; `actuation` has let them pass.

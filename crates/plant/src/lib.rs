@@ -6,12 +6,15 @@
 #![cfg_attr(not(any(feature = "std", test)), no_std)]
 
 pub mod actuation;
-#[cfg(feature = "std")]
+pub mod aerodynamics;
 pub mod dispatch;
 pub mod disturbance;
 pub mod dynamics;
 pub mod flight;
 pub mod random;
 pub mod reference;
+pub mod sling;
 pub mod state;
+pub mod timing;
 pub mod vehicle;
+pub mod world;

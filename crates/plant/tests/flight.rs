@@ -7,7 +7,7 @@
 
 mod common;
 
-use common::{Scene, bits, body, gains, hosm, named, step, world};
+use common::{Scene, bits, body, gains, hosm, named, source, step, world};
 use stormpetrel_control::attitude::{AttitudeLawSettings, tilt_priority};
 use stormpetrel_control::math::Vec3;
 use stormpetrel_control::observer::hosm::{Input, Z2};
@@ -197,7 +197,7 @@ fn an_observer_that_sees_nothing_is_no_observer_bit_for_bit() {
 #[test]
 fn a_disturbance_of_zero_is_no_disturbance_bit_for_bit() {
     let (mut zero, mut none) = (Scene::default().calm().flight(), Scene::default().calm().flight());
-    none.disturbance[0] = named::<DisturbanceSettings>("none").build(&none.vehicle);
+    none.disturbance[0] = source(named::<DisturbanceSettings>("none"), &none.vehicle);
     for tick in 0..3000 {
         step(&mut zero);
         step(&mut none);

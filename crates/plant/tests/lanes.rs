@@ -13,8 +13,12 @@ use stormpetrel_control::attitude_reference::Rates;
 use stormpetrel_control::lanes::Lanes;
 use stormpetrel_control::observer::ObserverSettings;
 use stormpetrel_control::observer::hosm::{Input, Z2};
-use stormpetrel_control::record::RecordExt;
+use stormpetrel_control::options::{Cells, OptionVisitor, Shape};
+use stormpetrel_control::record::{Meta, Path, RecordExt, VisitorMut};
+use stormpetrel_control::registry::Settings;
+use stormpetrel_plant::disturbance::{Site, SourceSettings};
 use stormpetrel_plant::flight::{Cause, Flight};
+use stormpetrel_plant::timing::{Delays, Timing};
 
 const LANES: usize = 8;
 const TICKS: u64 = 2000;
@@ -120,6 +124,125 @@ fn eight_flights_with_lagged_wrench_have_the_bits_of_single_ones() {
 #[test]
 fn eight_flights_on_rotors_have_the_bits_of_single_ones() {
     all_observers("rotors");
+}
+
+/// Brings every number of a disturbance to life, differently for each lane.
+struct Alive(f64);
+
+impl VisitorMut<f64> for Alive {
+    fn number(&mut self, path: &Path<'_>, meta: &Meta, value: &mut f64) {
+        let (lo, hi) = meta.range;
+        let wanted = match (path.name(), meta.unit) {
+            ("rotor", _) => 1.0 + self.0 % 4.0,
+            ("start", _) => 0.01 * self.0,
+            ("end", _) => 0.3 + 0.02 * self.0,
+            _ if *value == 0.0 => 0.02 * (self.0 - 3.5),
+            _ => *value * (1.0 + 0.02 * self.0),
+        };
+        *value = wanted.max(lo).min(hi);
+    }
+}
+
+impl OptionVisitor for Alive {
+    fn rows(&mut self, _: &'static str, _: &'static str, shape: &Shape, _: Cells) -> Cells {
+        let columns = shape.columns.len();
+        let cells: Vec<f64> = (0..4 * columns)
+            .map(|k| if k % columns == 0 { 0.1 * (k / columns) as f64 } else { 0.01 * k as f64 })
+            .collect();
+        Cells { cells: Vec::leak(cells), file: "" }
+    }
+}
+
+/// Eight flights through the whole world, with these disturbances.
+fn worldly(kinds: &[&str]) -> [Flight<f64>; LANES] {
+    let tables: Vec<SourceSettings> = kinds
+        .iter()
+        .map(|kind| {
+            let mut settings: SourceSettings = named(kind);
+            settings.settings(&mut Alive(0.0));
+            settings
+        })
+        .collect();
+    core::array::from_fn(|i| {
+        let mut scene = scene(i, "propulsion", hosm(1.5, Input::Measured, Z2::Single)).calm();
+        let vehicle = &mut scene.vehicle;
+        vehicle.motor_lag_fall = 0.03 + 1e-3 * i as f64;
+        vehicle.rotor_drag = body(0.1 + 0.01 * i as f64, 0.1, 0.05);
+        vehicle.rotor_inertia = 1e-6;
+        vehicle.rotor_radius = 0.05;
+        vehicle.inflow_loss = 1e-6;
+        let mut flight = scene.flight();
+        let delays = Delays {
+            computation_delay: 0.001 * (i % 3) as f64,
+            jitter: 0.002,
+            dropped: 0.1,
+            ..Delays::default()
+        };
+        flight.timing = Timing::new(delays, 17 + i as u64);
+        for (slot, table) in flight.disturbance.iter_mut().zip(&tables) {
+            let mut settings = *table;
+            struct Numbers(Alive);
+            impl VisitorMut<f64> for Numbers {
+                fn number(&mut self, path: &Path<'_>, meta: &Meta, value: &mut f64) {
+                    self.0.number(path, meta, value);
+                }
+            }
+            impl OptionVisitor for Numbers {}
+            settings.settings(&mut Numbers(Alive(i as f64)));
+            let site = Site { vehicle: flight.vehicle, step: flight.control_step, key: i as u64 };
+            *slot = settings.build(&site);
+        }
+        flight.start(flight.state);
+        flight
+    })
+}
+
+fn compare_worlds(kinds: &[&str]) {
+    let mut singles = worldly(kinds);
+    let mut lanes: Flight<Lanes<f64, LANES>> =
+        RecordExt::<f64>::gather(core::array::from_fn(|i| &singles[i]));
+    for tick in 0..400 {
+        let decided = lanes.decide();
+        lanes.advance(&decided);
+        for (i, single) in singles.iter_mut().enumerate() {
+            step(single);
+            assert_eq!(bits(&lanes.pick(i)), bits(single), "{kinds:?}, lane {i}, tick {tick}");
+        }
+    }
+}
+
+#[test]
+fn every_disturbance_has_the_bits_of_a_single_one_in_every_lane() {
+    for kind in SourceSettings::NAMES {
+        compare_worlds(&[kind]);
+    }
+    compare_worlds(&[
+        "dryden",
+        "jet",
+        "noise",
+        "payload",
+        "slung-mass",
+        "rotor-efficiency",
+        "imbalance",
+        "gust",
+    ]);
+}
+
+#[test]
+fn a_clock_that_began_long_ago_changes_no_bit() {
+    // 71.5 min of microseconds and 49.7 days of milliseconds: where counters of 32 bits wrap.
+    for late in [4_290_000u64, 4_294_080_000] {
+        for mut early in
+            worldly(&["dryden", "noise", "imbalance", "slung-mass", "gust", "rotor-lost"])
+        {
+            let mut shifted = Flight { tick: late, begin: late as f64, ..early };
+            for tick in 0..400 {
+                step(&mut early);
+                step(&mut shifted);
+                assert_eq!(bits(&early.state), bits(&shifted.state), "tick {tick}");
+            }
+        }
+    }
 }
 
 #[test]

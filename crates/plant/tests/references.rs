@@ -6,13 +6,14 @@
 
 mod common;
 
-use common::{Scene, body, named, world};
+use common::{Scene, body, named, source, world};
 use stormpetrel_control::math::{Vec3, World};
 use stormpetrel_control::options::OptionVisitor;
 use stormpetrel_control::record::{Meta, Path, VisitorMut};
 use stormpetrel_control::registry::Settings;
 use stormpetrel_control::signals::Trajectory;
-use stormpetrel_plant::disturbance::{Disturb, Disturbance, DisturbanceSettings, harmonic};
+use stormpetrel_plant::disturbance::{self, DisturbanceSettings, harmonic};
+use stormpetrel_plant::dynamics::Push;
 use stormpetrel_plant::reference::{Refer, Reference, ReferenceSettings};
 
 /// Gives every number another value inside its range.
@@ -79,13 +80,14 @@ fn the_helix_is_that_of_the_article() {
     }
 }
 
-fn disturbance(gains: harmonic::Gains<f64>) -> Disturbance<f64> {
-    DisturbanceSettings::Harmonic(gains, ()).build(&Scene::default().vehicle)
+fn pushed(gains: harmonic::Gains<f64>, time: f64) -> Push<f64> {
+    let vehicle = Scene::default().vehicle;
+    let at = disturbance::Scene { time, mass: vehicle.mass, ..disturbance::Scene::default() };
+    source(DisturbanceSettings::Harmonic(gains, ()), &vehicle).push(&at)
 }
 
 #[test]
 fn the_disturbance_is_that_of_the_article_in_either_reading() {
-    let vehicle = Scene::default().vehicle;
     // As a force in newtons, and literally, as an acceleration, which is m times as much force.
     let force = harmonic::Gains {
         force: Vec3::splat(50.0),
@@ -95,10 +97,10 @@ fn the_disturbance_is_that_of_the_article_in_either_reading() {
     let literal = harmonic::Gains { acceleration: Vec3::splat(50.0), ..harmonic::Gains::default() };
     for t in [0.0f64, 0.4, 2.0, 17.3] {
         let h = 1.0 + t.sin() + t.cos();
-        let push = disturbance(force).at(t, &vehicle);
+        let push = pushed(force, t);
         assert!((push.force - Vec3::splat(50.0 * h)).norm() < 1e-13, "{t} s");
         assert!((push.torque - body(0.5, 0.5, 0.5) * h).norm() < 1e-15, "{t} s");
-        let push = disturbance(literal).at(t, &vehicle);
+        let push = pushed(literal, t);
         assert!((push.force - Vec3::splat(0.625 * 50.0 * h)).norm() < 1e-13, "{t} s");
     }
 }
@@ -115,7 +117,7 @@ fn each_part_of_the_disturbance_has_its_own_amplitude_and_the_clock_its_own_rate
     };
     for t in [0.0f64, 0.9, 4.2] {
         let h = 0.3 - 0.7 * (2.5 * t).sin() + 1.9 * (2.5 * t).cos();
-        let push = disturbance(gains).at(t, &Scene::default().vehicle);
+        let push = pushed(gains, t);
         assert!((push.force - world(1.0, -2.0, 3.0) * h).norm() < 1e-14, "{t} s");
         assert_eq!(push.torque.norm(), 0.0);
     }

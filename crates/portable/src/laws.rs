@@ -9,7 +9,7 @@ use stormpetrel_control::rate::RateLawSettings;
 use stormpetrel_control::record::{Meta, Path, VisitorMut};
 use stormpetrel_control::registry::Settings;
 use stormpetrel_control::signals::Model;
-use stormpetrel_control::stack::{Exit, Laws, Stack};
+use stormpetrel_control::stack::{Exit, Laws, Rhythm, Stack};
 
 /// Says which laws to take, block by block in the order of the control diagram.
 pub trait Choose {
@@ -53,5 +53,5 @@ pub fn stack(from: &mut impl Choose, model: &Model<f64>, exit: Exit) -> Option<S
         attitude: settings::<AttitudeLawSettings>(from)?.build(model),
         rate: settings::<RateLawSettings>(from)?.build(model),
     };
-    Some(Stack::new(laws, exit))
+    Some(Stack::new(laws, exit, Rhythm::default()))
 }

@@ -5,7 +5,7 @@
 
 use stormpetrel_control::math::Vec3;
 use stormpetrel_control::real::Real;
-use stormpetrel_plant::disturbance::DisturbanceSettings;
+use stormpetrel_plant::disturbance::{DisturbanceSettings, SourceSettings};
 
 use crate::fly::{LANES, fly_batch_position};
 use crate::scenario::{File, Scenario};
@@ -55,7 +55,9 @@ pub fn plan(files: &[(&'static str, File)]) -> Vec<Scenario> {
 
 fn with_force(scenario: &Scenario, amplitude: f64) -> Scenario {
     let mut pushed = scenario.clone();
-    if let Some(DisturbanceSettings::Harmonic(gains, ())) = pushed.disturbance.first_mut() {
+    if let Some(SourceSettings { what: DisturbanceSettings::Harmonic(gains, ()), .. }) =
+        pushed.disturbance.first_mut()
+    {
         gains.force = Vec3::splat(amplitude);
     }
     pushed

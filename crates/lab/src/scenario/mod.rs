@@ -22,13 +22,15 @@ use stormpetrel_control::rate::RateLawSettings;
 use stormpetrel_control::record::Record;
 use stormpetrel_control::registry::Settings;
 use stormpetrel_control::signals::{Model, Thrust};
-use stormpetrel_control::stack::{Exit, Laws, Stack};
+use stormpetrel_control::stack::{Exit, Laws, Rhythm, Stack};
 use stormpetrel_control::{choice, options, record};
 use stormpetrel_plant::actuation::{Actuate, ActuationSettings};
-use stormpetrel_plant::disturbance::DisturbanceSettings;
+use stormpetrel_plant::disturbance::{Site, SourceSettings};
 use stormpetrel_plant::flight::{Flight, Limits};
+use stormpetrel_plant::random;
 use stormpetrel_plant::reference::{Refer, ReferenceSettings};
 use stormpetrel_plant::state::State;
+use stormpetrel_plant::timing::{Delays, Timing};
 use stormpetrel_plant::vehicle::VehicleSettings;
 
 pub use load::{Base, File, load, load_text, too_long};
@@ -49,6 +51,29 @@ record! {
         late: T [s] = 10.0, in 0.0 => 1e5;
         /// One row of the log for this many control steps.
         log_every: T [count] = 1.0, in 1.0 => 1e9;
+    }
+}
+
+record! {
+    /// How often each level acts.
+    pub struct Rates {
+        /// Control steps from one update of position law and observer to the next.
+        position_every: T [count] = 1.0, in 1.0 => 1000.0;
+        /// Control steps from one update of the attitude to the next.
+        attitude_every: T [count] = 1.0, in 1.0 => 1000.0;
+        /// Control steps from one update of the rate law to the next.
+        rate_every: T [count] = 1.0, in 1.0 => 1000.0;
+    }
+}
+
+impl Rates<f64> {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the ranges are small
+    fn rhythm(&self) -> Rhythm {
+        Rhythm {
+            position: self.position_every as u32,
+            attitude: self.attitude_every as u32,
+            rate: self.rate_every as u32,
+        }
     }
 }
 
@@ -131,8 +156,12 @@ pub struct Scenario {
     pub rate: RateLawSettings,
     /// Between laws and body.
     pub actuation: ActuationSettings,
+    /// How often each level acts.
+    pub rates: Rates<f64>,
+    /// When commands reach the rotors.
+    pub timing: Delays<f64>,
     /// What pushes.
-    pub disturbance: Vec<DisturbanceSettings>,
+    pub disturbance: Vec<SourceSettings>,
     /// When the flight counts as failed.
     pub failure: Limits<f64>,
     /// Choices about failure.
@@ -184,6 +213,8 @@ impl Scenario {
         v.block("attitude", "Attitude law.", &mut self.attitude);
         v.block("rate", "Rate law.", &mut self.rate);
         v.block("actuation", "Between laws and body.", &mut self.actuation);
+        v.plain("rates", "How often each level acts.", &mut self.rates, &mut ());
+        v.plain("timing", "When commands reach the rotors.", &mut self.timing, &mut ());
         v.list("disturbance", "What pushes the vehicle.", &mut self.disturbance);
         v.plain(
             "failure",
@@ -214,6 +245,12 @@ impl Scenario {
         matches!(self.actuation, ActuationSettings::Rotors(..))
     }
 
+    /// Key of all random draws of the flight.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // whole and below 2^53
+    fn key(&self) -> u64 {
+        random::key(self.run.seed as u64, 0)
+    }
+
     /// The flight, ready to start its first tick.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked on loading
     pub fn flight(&self) -> Flight<f64> {
@@ -230,7 +267,7 @@ impl Scenario {
         let mut flight = Flight {
             vehicle,
             model,
-            stack: Stack::new(laws, exit),
+            stack: Stack::new(laws, exit, self.rates.rhythm()),
             actuation,
             reference: self.reference.build(&vehicle),
             limits: self.failure,
@@ -238,8 +275,12 @@ impl Scenario {
             substeps: self.run.substeps as u32,
             ..Flight::default()
         };
-        for (slot, source) in flight.disturbance.iter_mut().zip(&self.disturbance) {
-            *slot = source.build(&vehicle);
+        let site = Site { vehicle, step: self.run.control_step, key: self.key() };
+        flight.timing = Timing::new(self.timing, site.at("timing", 0).key);
+        for (i, slot) in flight.disturbance.iter_mut().take(self.disturbance.len()).enumerate() {
+            let kind = self.disturbance[i].name();
+            let twins = self.disturbance[..i].iter().filter(|other| other.name() == kind).count();
+            *slot = self.disturbance[i].build(&site.at(kind, twins));
         }
         flight.start(self.first_state(&flight));
         flight

@@ -34,6 +34,8 @@ impl Scenario {
             attitude: first(),
             rate: first(),
             actuation: first(),
+            rates: Default::default(),
+            timing: Default::default(),
             disturbance: Vec::new(),
             failure: Default::default(),
             failure_options: FailureOptions::default(),
@@ -60,7 +62,16 @@ impl Scenario {
     pub fn structure(&self) -> String {
         let mut writer = Writer { skip: !self.has_attitude(), ..Writer::default() };
         self.clone().blocks(&mut writer);
-        format!("{} ticks={} substeps={}", writer.structure, self.ticks(), self.run.substeps)
+        let flight = self.flight();
+        format!(
+            "{} ticks={} substeps={} every={:?} cares={:?} late={}",
+            writer.structure,
+            self.ticks(),
+            self.run.substeps,
+            flight.stack.every,
+            flight.cares,
+            flight.timing.late,
+        )
     }
 }
 
@@ -138,10 +149,12 @@ impl BlockVisitor for Writer {
         }
         let (value, structure) = write(settings);
         self.all.insert(key.to_owned(), value);
-        // Presets of a vehicle differ in numbers only.
-        if key != "vehicle" {
-            self.structure += &format!("{key}: {structure}; ");
-        }
+        // Presets of a vehicle differ in numbers and choices only.
+        let structure = match key {
+            "vehicle" => structure.trim_start_matches(settings.name()).to_owned(),
+            _ => structure,
+        };
+        self.structure += &format!("{key}: {structure}; ");
     }
 
     fn list<S: Settings>(&mut self, key: &'static str, _: &'static str, settings: &mut Vec<S>) {

@@ -1,16 +1,30 @@
 //! From the stack's command to the thrust and torque on the body.
 
+pub mod battery;
+pub mod curve;
+
 use stormpetrel_control::controller::Plain;
 use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record::RecordExt as _;
-use stormpetrel_control::registry;
 use stormpetrel_control::signals::Wrench;
 use stormpetrel_control::stack::{Command, Exit};
+use stormpetrel_control::{record, registry};
 
+use crate::disturbance::RotorFaults;
 use crate::dynamics::{Held, runge_kutta};
 use crate::state::State;
 use crate::vehicle::Vehicle;
+
+record! {
+    /// What the rotors do to the body.
+    pub struct Load {
+        /// Thrust per mass.
+        thrust_per_mass: Vec3<T, World> [m/s^2];
+        /// Torque.
+        torque: Vec3<T, Body> [N m];
+    }
+}
 
 /// Turns commands into thrust and torque.
 pub trait Actuate<T: Real>: Plain<T> {
@@ -23,18 +37,26 @@ pub trait Actuate<T: Real>: Plain<T> {
     fn pass(&mut self, _h: T) {}
     /// Forgets what was commanded, as at the start of a flight.
     fn reset(&mut self) {}
-    /// The rotors' thrust per mass, m/s^2.
+    /// Told at every tick what is broken; only rotors of their own can break.
+    #[inline(always)]
+    fn suffer(&mut self, _faults: &RotorFaults<T>, _state: &State<T>, _dt: T) {}
+    /// What acts on the body in this state.
+    #[inline(always)]
+    fn load(&self, state: &State<T>, vehicle: &Vehicle<T>, _held: &Held<T>) -> Load<T> {
+        Load { thrust_per_mass: self.thrust_per_mass(state, vehicle), torque: self.torque(state) }
+    }
+    /// The rotors' thrust per mass, in still air, m/s^2.
     fn thrust_per_mass(&self, state: &State<T>, vehicle: &Vehicle<T>) -> Vec3<T, World>;
-    /// The rotors' torque, N m.
+    /// The rotors' torque, in still air, N m.
     fn torque(&self, state: &State<T>) -> Vec3<T, Body>;
-    /// Total thrust along the body's up axis, N.
+    /// Total thrust along the body's up axis, in still air, N.
     fn thrust(&self, state: &State<T>) -> T;
     /// Rotor speeds at the middle and at the end of the step that `pass` was told of, rad/s.
     #[inline(always)]
     fn rotor_speeds(&self, state: &State<T>) -> [[T; 4]; 2] {
         [state.rotor_speed; 2]
     }
-    /// Thrust and torque that the laws expect over those that act.
+    /// Thrust and torque that the laws expect over those in still air.
     #[inline(always)]
     fn belief(&self) -> T {
         T::one()
@@ -49,7 +71,7 @@ pub trait Actuate<T: Real>: Plain<T> {
 macro_rules! dispatch_actuate {
     ($name:ident [$($variant:ident)+] ()) => {
         impl<T: Real> $name<T> {
-            /// Thrust and torque that act in this state.
+            /// Thrust and torque of the rotors in this state, in still air.
             #[inline(always)]
             pub fn wrench(&self, state: &State<T>) -> Wrench<T> {
                 let mut wrench = Wrench::default();
@@ -60,7 +82,7 @@ macro_rules! dispatch_actuate {
                 wrench
             }
 
-            /// The state `h` seconds on, vehicle by vehicle.
+            /// The state `h` seconds on, vehicle by vehicle, where nothing but pushes disturbs it.
             #[inline(always)]
             pub fn step(&mut self, state: &State<T>, h: T, vehicle: &Vehicle<T>, held: &Held<T>) -> State<T> {
                 let mut next = *state;
@@ -87,6 +109,14 @@ macro_rules! dispatch_actuate {
             #[inline(always)]
             fn pass(&mut self, h: T) {
                 match self { $( Self::$variant(x) => x.pass(h), )+ }
+            }
+            #[inline(always)]
+            fn suffer(&mut self, faults: &RotorFaults<T>, state: &State<T>, dt: T) {
+                match self { $( Self::$variant(x) => x.suffer(faults, state, dt), )+ }
+            }
+            #[inline(always)]
+            fn load(&self, state: &State<T>, vehicle: &Vehicle<T>, held: &Held<T>) -> Load<T> {
+                match self { $( Self::$variant(x) => x.load(state, vehicle, held), )+ }
             }
             fn reset(&mut self) {
                 match self { $( Self::$variant(x) => x.reset(), )+ }
@@ -131,4 +161,5 @@ registry! {
     "wrench" => IdealWrench in wrench;
     "lagged-wrench" => LaggedWrench in lagged_wrench;
     "rotors" => Rotors in rotors;
+    "propulsion" => Propulsion in propulsion;
 }

@@ -11,9 +11,8 @@ use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
 
-use super::Disturb;
+use super::{Disturb, Scene, Site};
 use crate::dynamics::Push;
-use crate::vehicle::Vehicle;
 
 record! {
     /// Numbers of the harmonic disturbance.
@@ -48,17 +47,17 @@ record! {
 
 impl<T: Real> Harmonic<T> {
     /// The disturbance.
-    pub fn new(gains: Gains<T>, _: Options, _: &Vehicle<T>) -> Self {
+    pub fn new(gains: Gains<T>, _: Options, _: &Site<T>) -> Self {
         Self { gains }
     }
 }
 
 impl<T: Real> Disturb<T> for Harmonic<T> {
     #[inline(always)]
-    fn at(&self, time: T, vehicle: &Vehicle<T>) -> Push<T> {
+    fn push(&mut self, scene: &Scene<T>) -> Push<T> {
         let Gains { force, torque, acceleration, offset, sine, cosine, frequency } = self.gains;
-        let (sin, cos) = (frequency * time).sin_cos();
+        let (sin, cos) = (frequency * scene.time).sin_cos();
         let h = offset + sine * sin + cosine * cos; // (1)
-        Push { force: (force + acceleration * vehicle.mass) * h, torque: torque * h } // (2)
+        Push { force: (force + acceleration * scene.mass) * h, torque: torque * h } // (2)
     }
 }

@@ -5,9 +5,7 @@
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record::Nothing;
 
-use super::Disturb;
-use crate::dynamics::Push;
-use crate::vehicle::Vehicle;
+use super::{Disturb, Reach, Site};
 
 /// Nothing to set.
 pub type Gains<T> = Nothing<T>;
@@ -24,14 +22,13 @@ stormpetrel_control::record! {
 
 impl<T: Real> Calm<T> {
     /// Still air.
-    pub fn new(_: Gains<T>, _: Options, _: &Vehicle<T>) -> Self {
+    pub fn new(_: Gains<T>, _: Options, _: &Site<T>) -> Self {
         Self::default()
     }
 }
 
 impl<T: Real> Disturb<T> for Calm<T> {
-    #[inline(always)]
-    fn at(&self, _: T, _: &Vehicle<T>) -> Push<T> {
-        Push::default() // (1)
+    fn reach(&self) -> Reach {
+        Reach::Nothing // (1)
     }
 }

@@ -9,9 +9,11 @@ use stormpetrel_control::position::{PositionSettings, pid};
 use stormpetrel_control::rate::{RateLawSettings, indi};
 use stormpetrel_control::record::{Meta, Path, Record, Visitor};
 use stormpetrel_control::registry::Settings;
-use stormpetrel_control::stack::{Laws, Stack};
+use stormpetrel_control::stack::{Laws, Rhythm, Stack};
 use stormpetrel_plant::actuation::{Actuate, ActuationSettings};
-use stormpetrel_plant::disturbance::{DisturbanceSettings, harmonic};
+use stormpetrel_plant::disturbance::{
+    DisturbanceSettings, Site, Source, SourceSettings, Window, harmonic,
+};
 use stormpetrel_plant::dynamics::{Held, Push, Reciprocals, runge_kutta};
 use stormpetrel_plant::flight::Flight;
 use stormpetrel_plant::reference::{Refer, ReferenceSettings};
@@ -113,14 +115,15 @@ impl Scene {
         let mut flight = Flight {
             vehicle,
             model,
-            stack: Stack::new(laws, actuation.exit()),
+            stack: Stack::new(laws, actuation.exit(), Rhythm::default()),
             actuation,
             reference: self.reference.build(&vehicle),
             control_step: self.control_step,
             substeps: self.substeps,
             ..Flight::default()
         };
-        flight.disturbance[0] = DisturbanceSettings::Harmonic(self.disturbance, ()).build(&vehicle);
+        flight.disturbance[0] =
+            source(DisturbanceSettings::Harmonic(self.disturbance, ()), &vehicle);
         let start = flight.reference.at(0.0);
         flight.start(State {
             position: start.position,
@@ -136,6 +139,12 @@ impl Scene {
         self.disturbance = harmonic::Gains::default();
         self
     }
+}
+
+/// The disturbance over the whole flight, at 1 kHz.
+pub fn source(what: DisturbanceSettings, vehicle: &Vehicle<f64>) -> Source<f64> {
+    let site = Site { vehicle: *vehicle, step: 0.001, key: 1 };
+    SourceSettings { window: Window::default(), what }.build(&site)
 }
 
 /// One tick.

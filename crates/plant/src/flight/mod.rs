@@ -1,5 +1,7 @@
 //! The closed loop: sense, decide, move. The only one in the project.
 
+mod surroundings;
+
 use stormpetrel_control::math::{Body, Rotation, Vec3, World};
 use stormpetrel_control::real::{Mask, Real};
 use stormpetrel_control::record;
@@ -8,11 +10,15 @@ use stormpetrel_control::signals::{Applied, Measurement, Model, Trajectory, Wren
 use stormpetrel_control::stack::{Command, Stack};
 
 use crate::actuation::{Actuate, Actuation};
-use crate::disturbance::{Disturb as _, Disturbance, MOST};
+use crate::disturbance::{MOST, Source};
 use crate::dynamics::{Held, Push, Reciprocals, acceleration};
 use crate::reference::{Refer, Reference};
 use crate::state::State;
+use crate::timing::Timing;
 use crate::vehicle::Vehicle;
+use crate::world;
+
+pub use surroundings::{Air, Cares, Surroundings};
 
 record! {
     /// When a flight counts as failed.
@@ -101,6 +107,10 @@ record! {
         applied: Wrench<T> [];
         /// True disturbance.
         disturbance: Disturbed<T> [];
+        /// The air.
+        air: Air<T> [];
+        /// What hangs on a cable, from the centre of mass.
+        cargo: Vec3<T, World> [m];
         /// Estimated disturbance.
         estimate: Estimated<T> [];
         /// Share of the rotors asked to run at a limit.
@@ -124,7 +134,9 @@ record! {
         /// Where to fly.
         reference: Reference<T> [];
         /// What pushes.
-        disturbance: [Disturbance<T>; MOST] [];
+        disturbance: [Source<T>; MOST] [];
+        /// When commands reach the rotors.
+        timing: Timing<T> [];
         /// When the flight counts as failed.
         limits: Limits<T> [];
         /// Time between two commands.
@@ -133,12 +145,18 @@ record! {
         state: State<T> [];
         /// One over mass and inertia of the vehicle.
         per: Reciprocals<T> [];
+        /// The vehicle with its payload.
+        laden: Vehicle<T> [];
+        /// What stays constant over the tick.
+        held: Held<T> [];
         /// Thrust that the laws expect over the true one.
         belief: T [1];
         /// True mass over the mass that the laws believe.
         mass_ratio: T [1];
         /// The rotors' thrust per mass at the start of the tick.
         thrust_per_mass: Vec3<T, World> [m/s^2];
+        /// What the laws decided at the last tick.
+        decided: Command<T> [];
         /// What the allocation refused at the last tick.
         unallocated: Wrench<T> [];
         /// 1 while flying, 0 once failed.
@@ -154,77 +172,133 @@ record! {
             substeps: u32;
             /// Ticks since the batch began, common to all lanes.
             tick: u64;
+            /// What there is to look after beside pushes.
+            cares: Cares;
         }
     }
 }
 
-impl<T: Real> Flight<T> {
+impl Flight<f64> {
     /// Puts the vehicle at `state` and lets every law begin there.
-    pub fn start(&mut self, state: State<T>) {
+    pub fn start(&mut self, state: State<f64>) {
         self.state = state;
+        self.cares = self.cares();
+        self.laden = self.vehicle;
         self.per = Reciprocals::new(&self.vehicle);
         self.belief = self.actuation.belief();
         self.mass_ratio = self.vehicle.mass / self.model.mass;
         self.actuation.reset();
+        self.timing.reset(self.model.mass, self.model.gravity);
         self.unallocated = Wrench::default();
-        (self.alive, self.cause, self.flown) = (T::one(), T::zero(), T::zero());
+        (self.alive, self.cause, self.flown) = (1.0, 0.0, 0.0);
         self.tick = 0;
-        self.stack.reset(&self.measure(self.actuation.wrench(&state)));
+        self.stack.reset(&self.measure());
     }
+}
 
+impl<T: Real> Flight<T> {
     /// What the laws see: the true state, and the rotors as their model has them.
     #[inline(always)]
-    fn measure(&self, wrench: Wrench<T>) -> Measurement<T> {
-        let Wrench { thrust, torque } = wrench;
+    fn measure(&self) -> Measurement<T> {
+        let Wrench { thrust, torque } = self.actuation.wrench(&self.state);
         let achieved = Wrench { thrust: thrust * self.belief, torque: torque * self.belief };
         let State { position, velocity, attitude, rate, .. } = self.state;
         Measurement { position, velocity, attitude, rate, achieved, unallocated: self.unallocated }
     }
 
+    /// Ticks since the start.
+    #[inline(always)]
+    pub fn ticks(&self) -> T {
+        T::lit(self.tick as f64) - self.begin
+    }
+
     /// Time since the start, s: a count times the step, never a sum.
     #[inline(always)]
     pub fn time(&self) -> T {
-        (T::lit(self.tick as f64) - self.begin) * self.control_step
+        self.ticks() * self.control_step
+    }
+
+    /// Control steps after which a flight may begin beside others.
+    pub fn period(&self) -> u64 {
+        self.stack.every.period()
     }
 
     /// Reference, laws, actuation: everything that happens at the start of a tick.
     #[inline(always)]
     pub fn decide(&mut self) -> Tick<T> {
-        let (time, dt) = (self.time(), self.control_step);
+        let time = self.time();
         let reference = self.reference.at(time);
-        let mut push = Push::default();
-        for source in &self.disturbance {
-            if !matches!(source, Disturbance::Calm(_)) {
-                let one = source.at(time, &self.vehicle);
-                push.force += one.force;
-                push.torque += one.torque;
-            }
-        }
+        let around = self.surroundings();
+        self.held = self.hold(&around);
         let estimate = self.stack.estimate() * self.model.mass;
-        let measurement = self.measure(self.actuation.wrench(&self.state));
-        let command = self.stack.update(&measurement, &reference, dt);
+        let command = self.command(&reference);
         self.unallocated = self.actuation.command(&command, &self.vehicle);
+        if self.cares.propulsion {
+            self.actuation.suffer(&around.rotors, &self.state, self.control_step);
+        }
         self.thrust_per_mass = self.actuation.thrust_per_mass(&self.state, &self.vehicle);
-        let State { position, velocity, attitude, rate, rotor_speed } = self.state;
+        let mut tick = self.tick_of(&reference, &command, &around, estimate);
+        if self.cares.any() {
+            self.look_around(&mut tick);
+        } else {
+            tick.disturbance.lumped = self.lumped(&around.push);
+        }
+        tick
+    }
+
+    /// What a plain flight shows at this tick, without the lumped disturbance.
+    #[inline(always)]
+    fn tick_of(
+        &self,
+        reference: &Trajectory<T>,
+        command: &Command<T>,
+        around: &Surroundings<T>,
+        estimate: Vec3<T, World>,
+    ) -> Tick<T> {
+        let State { position, velocity, attitude, rate, rotor_speed, cargo, .. } = self.state;
         Tick {
-            time,
+            time: self.time(),
             position,
             velocity,
             attitude,
             rate,
             rotor_speed,
-            reference,
-            command,
+            reference: *reference,
+            command: *command,
             applied: self.actuation.wrench(&self.state),
             disturbance: Disturbed {
-                force: push.force,
-                torque: push.torque,
-                lumped: self.lumped(&push),
+                force: around.push.force,
+                torque: around.push.torque,
+                lumped: Vec3::zero(),
             },
+            air: Air { wind: around.wind, ..Air::default() },
+            cargo,
             estimate: Estimated { force: estimate },
             saturation: self.actuation.saturation(),
             flags: self.stack.flags(),
         }
+    }
+
+    /// What the laws decide, and what of it reaches the rotors at this tick.
+    #[inline(always)]
+    fn command(&mut self, reference: &Trajectory<T>) -> Command<T> {
+        let (measurement, dt) = (self.measure(), self.control_step);
+        let before = if self.timing.late { Some(self.stack) } else { None };
+        let mut command = self.stack.update(&measurement, reference, dt);
+        if let Some(before) = before {
+            self.delay(&before, &mut command);
+        }
+        command
+    }
+
+    /// What reaches the rotors now; where the tick is dropped, the laws have not run.
+    #[inline(never)]
+    fn delay(&mut self, before: &Stack<T>, command: &mut Command<T>) {
+        let tick = self.ticks();
+        let dropped = self.timing.dropped(tick);
+        self.stack = blend(dropped, before, &self.stack);
+        self.decided = blend(dropped, &self.decided, command);
+        *command = self.timing.pass(&self.decided, tick, self.tick, self.control_step);
     }
 
     /// m_law (a + g_law e_z) - T_law R e_z from the true acceleration, N.
@@ -264,13 +338,17 @@ impl<T: Real> Flight<T> {
         let applied = self.applied(&tick.command);
         self.stack.advance(&applied, dt);
 
-        let push = Push { force: tick.disturbance.force, torque: tick.disturbance.torque };
-        let held = Held::new(&self.per, &push);
         let h = dt * T::lit(1.0 / f64::from(self.substeps));
-        let mut state = self.state;
-        for _ in 0..self.substeps {
-            state = self.actuation.step(&state, h, &self.vehicle, &held);
-        }
+        let state = if self.cares.any() {
+            let vehicle = if self.cares.laden { &self.laden } else { &self.vehicle };
+            world::advance(&self.state, h, self.substeps, vehicle, &mut self.actuation, &self.held)
+        } else {
+            let mut state = self.state;
+            for _ in 0..self.substeps {
+                state = self.actuation.step(&state, h, &self.vehicle, &self.held);
+            }
+            state
+        };
         let steady = state.sum(|x| x).is_finite() & T::zero().lt(self.alive);
         if steady.all() {
             self.state = state;

@@ -1,0 +1,282 @@
+//! What surrounds the vehicle at one tick: all disturbances together.
+
+use stormpetrel_control::math::{Body, Vec3, World};
+use stormpetrel_control::real::Real;
+use stormpetrel_control::record;
+
+use super::{Flight, Tick};
+use crate::actuation::Actuation;
+use crate::aerodynamics::drag;
+use crate::dispatch::{Work, wide};
+use crate::disturbance::{Cargo, Disturbance, MOST, Reach, RotorFaults, Scene, Source};
+use crate::dynamics::{Held, Push, Reciprocals};
+use crate::sling::Sling;
+use crate::state::State;
+use crate::vehicle::Vehicle;
+use crate::world::{Scenery, Seen, look};
+
+record! {
+    /// All disturbances of a tick, summed by what they touch.
+    pub struct Surroundings {
+        /// Force and torque.
+        push: Push<T> [];
+        /// Velocity of the air.
+        wind: Vec3<T, World> [m/s];
+        /// Rigid load.
+        cargo: Cargo<T> [];
+        /// Mass on a cable.
+        sling: Sling<T> [];
+        /// Broken rotors.
+        rotors: RotorFaults<T> [];
+    }
+}
+
+record! {
+    /// The air at one tick.
+    pub struct Air {
+        /// Velocity of the air.
+        wind: Vec3<T, World> [m/s];
+        /// Force of the air on the body.
+        force: Vec3<T, World> [N];
+        /// Torque of the air on the body.
+        torque: Vec3<T, Body> [N m];
+    }
+}
+
+/// What a flight has to look after beside pushes; equal in all lanes of a batch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cares {
+    /// The air acts on the body or on the rotors.
+    pub air: bool,
+    /// The centre of mass may lie off the rotors' centre, or a payload may come and go.
+    pub laden: bool,
+    /// Something may hang on a cable.
+    pub sling: bool,
+    /// The rotors have troubles of their own.
+    pub propulsion: bool,
+    /// Some disturbance is not harmonic.
+    pub more: bool,
+}
+
+impl Cares {
+    /// Whether the whole world is needed: more than pushes.
+    #[inline(always)]
+    pub fn any(self) -> bool {
+        self.air || self.laden || self.sling || self.propulsion
+    }
+}
+
+impl Flight<f64> {
+    /// What this flight has to look after.
+    pub(super) fn cares(&self) -> Cares {
+        let touches = |reach| self.disturbance.iter().any(|source| source.reach() == reach);
+        let center = self.vehicle.center_of_mass;
+        Cares {
+            air: self.vehicle.feels_air(),
+            laden: touches(Reach::Cargo) || center.norm_squared() > 0.0,
+            sling: touches(Reach::Sling),
+            propulsion: matches!(self.actuation, Actuation::Propulsion(_)),
+            more: self.disturbance.iter().any(|source| {
+                !matches!(source.what, Disturbance::Calm(_) | Disturbance::Harmonic(_))
+            }),
+        }
+    }
+}
+
+impl<T: Real> Flight<T> {
+    /// What a disturbance may know now.
+    #[inline(always)]
+    fn scene(&self) -> Scene<T> {
+        Scene {
+            time: self.time(),
+            tick: self.ticks(),
+            step: self.control_step,
+            state: self.state,
+            mass: self.vehicle.mass,
+        }
+    }
+
+    /// Asks every disturbance. The plainest one is asked in the loop itself.
+    #[inline(always)]
+    pub(super) fn surroundings(&mut self) -> Surroundings<T> {
+        let scene = self.scene();
+        let mut all = Surroundings { rotors: RotorFaults::none(), ..Surroundings::default() };
+        for source in &mut self.disturbance {
+            if let Disturbance::Harmonic(_) = source.what {
+                all.push.add(&source.push(&scene));
+            }
+        }
+        if self.cares.more {
+            survey(&mut self.disturbance, &scene, &mut all);
+        }
+        all
+    }
+
+    /// What stays constant over the tick; the vehicle with its load goes to `self.laden`.
+    #[inline(always)]
+    pub(super) fn hold(&mut self, around: &Surroundings<T>) -> Held<T> {
+        if !self.cares.any() {
+            return Held { wind: around.wind, ..Held::new(&self.per, &around.push) };
+        }
+        self.hold_more(around)
+    }
+
+    #[inline(never)]
+    fn hold_more(&mut self, around: &Surroundings<T>) -> Held<T> {
+        let Cargo { mass, place } = around.cargo;
+        let (mut per, mut share, mut shift) = (self.per, T::one(), self.vehicle.center_of_mass);
+        if self.cares.laden {
+            let whole = self.vehicle.mass + mass;
+            let reduced = self.vehicle.mass * mass / whole;
+            let square = place.norm_squared();
+            let around = place.map(|r| square - r.sq());
+            self.laden = Vehicle {
+                mass: whole,
+                inertia: self.vehicle.inertia + around * reduced,
+                ..self.vehicle
+            };
+            per = Reciprocals::new(&self.laden);
+            share = self.vehicle.mass * per.mass;
+            shift += place * (mass * per.mass);
+        }
+        if self.cares.sling {
+            self.attach(&around.sling);
+        }
+        Held {
+            wind: around.wind,
+            sling: around.sling,
+            share,
+            shift,
+            airy: self.cares.air,
+            hangs: self.cares.sling,
+            laden: self.cares.laden,
+            ..Held::new(&per, &around.push)
+        }
+    }
+
+    /// Lets a cable that has just been attached hang straight down.
+    #[inline(always)]
+    fn attach(&mut self, sling: &Sling<T>) {
+        let new = T::zero().lt(sling.mass) & self.state.cargo.norm_squared().eq(T::zero());
+        let gone = sling.mass.eq(T::zero());
+        let State { cargo, cargo_velocity, .. } = self.state;
+        let cargo = Vec3::select(new, Vec3::up(-sling.length), cargo);
+        self.state.cargo = Vec3::select(gone, Vec3::zero(), cargo);
+        self.state.cargo_velocity = Vec3::select(gone, Vec3::zero(), cargo_velocity);
+    }
+
+    /// The vehicle as it is now, its load included.
+    #[inline(always)]
+    pub fn body(&self) -> &Vehicle<T> {
+        if self.cares.laden { &self.laden } else { &self.vehicle }
+    }
+
+    /// What acts on the vehicle now.
+    fn look(&self) -> Seen<T> {
+        let scenery =
+            Scenery { vehicle: self.body(), actuation: &self.actuation, held: &self.held };
+        look(&self.state, scenery)
+    }
+
+    /// True acceleration, m/s^2.
+    pub fn acceleration(&self) -> Vec3<T, World> {
+        self.look().acceleration
+    }
+
+    /// Writes down what only the whole world shows.
+    #[inline(never)]
+    pub(super) fn look_around(&self, tick: &mut Tick<T>) {
+        let seen = self.look();
+        tick.applied = seen.rotors;
+        (tick.air.force, tick.air.torque) = (seen.air_force, seen.air_torque);
+        let a = seen.acceleration + Vec3::up(self.model.gravity);
+        let expected = self.thrust_per_mass * (self.vehicle.mass * self.belief);
+        tick.disturbance.lumped = a * self.model.mass - expected;
+    }
+
+    /// True force (N, world) and torque (N m, body) of each disturbance at the tick that `decide` began, in
+    /// the order of the scenario; `before` are the disturbances as they were before it. The force of a wind
+    /// is what the air does to the body with it, less what it does without it; that of a load is what the
+    /// vehicle feels of it.
+    pub fn attributed(&self, before: [Source<T>; MOST]) -> [Push<T>; MOST] {
+        let (scene, held, acceleration) = (self.scene(), &self.held, self.look().acceleration);
+        let gravity = Vec3::up(self.vehicle.gravity);
+        let mut pushes = [Push::default(); MOST];
+        for (push, source) in pushes.iter_mut().zip(before) {
+            let mut source = source;
+            *push = match source.reach() {
+                Reach::Nothing | Reach::Rotors => Push::default(),
+                Reach::Body => source.push(&scene),
+                Reach::Air => {
+                    let without = held.wind - source.wind(&scene);
+                    let with = drag(&self.state, &self.vehicle, held.wind);
+                    let rest = drag(&self.state, &self.vehicle, without);
+                    Push { force: with.force - rest.force, torque: with.torque - rest.torque }
+                }
+                Reach::Cargo => {
+                    let Cargo { mass, place } = source.cargo(&scene);
+                    let force = -(acceleration + gravity) * mass;
+                    Push { force, torque: place.cross(self.state.attitude.inverse() * force) }
+                }
+                Reach::Sling => {
+                    let Sling { mass, length, .. } = source.sling(&scene);
+                    let per_length = T::one() / length;
+                    let State { cargo, cargo_velocity, .. } = self.state;
+                    let q = cargo * per_length;
+                    // Newton's law for what hangs, along the cable.
+                    let along = q.dot(acceleration + gravity);
+                    let tension = mass * (cargo_velocity.norm_squared() * per_length - along);
+                    Push { force: q * tension.max(T::zero()), torque: Vec3::zero() }
+                }
+            };
+        }
+        pushes
+    }
+}
+
+/// Disturbances, asked on the widest registers.
+struct Survey<'a, T> {
+    sources: &'a mut [Source<T>; MOST],
+    scene: Scene<T>,
+    all: Surroundings<T>,
+}
+
+impl<T: Real> Work for Survey<'_, T> {
+    type Output = Surroundings<T>;
+    #[inline(always)]
+    fn run(self) -> Surroundings<T> {
+        let Self { sources, scene, mut all } = self;
+        for source in sources {
+            match source.reach() {
+                Reach::Body if !matches!(source.what, Disturbance::Harmonic(_)) => {
+                    all.push.add(&source.push(&scene));
+                }
+                Reach::Nothing | Reach::Body => {}
+                Reach::Air => all.wind += source.wind(&scene),
+                Reach::Cargo => {
+                    let cargo = source.cargo(&scene);
+                    all.cargo.place = joint(&all.cargo, &cargo);
+                    all.cargo.mass += cargo.mass;
+                }
+                Reach::Sling => all.sling = source.sling(&scene),
+                Reach::Rotors => all.rotors.add(&source.rotors(&scene)),
+            }
+        }
+        all
+    }
+}
+
+/// Adds what all disturbances do but the harmonic ones.
+#[inline(never)]
+fn survey<T: Real>(sources: &mut [Source<T>; MOST], scene: &Scene<T>, all: &mut Surroundings<T>) {
+    *all = wide::<T, _>(Survey { sources, scene: *scene, all: *all });
+}
+
+/// Common place of two loads.
+#[inline(always)]
+fn joint<T: Real>(a: &Cargo<T>, b: &Cargo<T>) -> Vec3<T, Body> {
+    let mass = a.mass + b.mass;
+    let some = T::zero().lt(mass);
+    let per_mass = T::one() / T::select(some, mass, T::one());
+    Vec3::select(some, (a.place * a.mass + b.place * b.mass) * per_mass, b.place)
+}
