@@ -8,6 +8,8 @@ use stormpetrel_control::signals::Trajectory;
 
 use crate::vehicle::Vehicle;
 
+pub mod phase;
+
 /// A trajectory with all derivatives.
 pub trait Refer<T: Real>: Plain<T> {
     /// The reference `time` seconds after the start.
@@ -35,4 +37,8 @@ registry! {
     dispatch dispatch_refer ();
     "hover" => Hover in hover;
     "helix" => Helix in helix;
+    "line" => Line in line;
+    "circle" => Circle in circle;
+    "lemniscate" => Lemniscate in lemniscate;
+    "lissajous" => Lissajous in lissajous;
 }
