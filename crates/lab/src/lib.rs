@@ -4,6 +4,7 @@
 mod batch;
 pub mod campaign;
 pub mod catalogue;
+pub mod curve;
 pub mod figures;
 pub mod fly;
 pub mod log;

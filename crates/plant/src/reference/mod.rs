@@ -9,6 +9,7 @@ use stormpetrel_control::signals::Trajectory;
 use crate::vehicle::Vehicle;
 
 pub mod phase;
+pub mod piecewise;
 
 /// A trajectory with all derivatives.
 pub trait Refer<T: Real>: Plain<T> {
@@ -41,4 +42,7 @@ registry! {
     "circle" => Circle in circle;
     "lemniscate" => Lemniscate in lemniscate;
     "lissajous" => Lissajous in lissajous;
+    "minimum-snap" => MinimumSnap in minimum_snap;
+    "race" => Race in race;
+    "table" => Table in table;
 }
