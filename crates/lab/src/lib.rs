@@ -5,6 +5,7 @@ mod batch;
 pub mod campaign;
 pub mod catalogue;
 pub mod curve;
+pub mod feasible;
 pub mod figures;
 pub mod fly;
 pub mod log;

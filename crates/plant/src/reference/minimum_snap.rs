@@ -76,7 +76,8 @@ impl<T: Real> MinimumSnap<T> {
     pub fn new(gains: Gains<T>, options: Options, _: &Vehicle<T>) -> Self {
         let Gains { speed, acceleration, yaw_rate } = gains;
         let limits = Limits { speed, acceleration, yaw_rate };
-        Self { gains, options, pace: options.curve.pace(&limits, T::zero()) } // (2)
+        let pace = options.curve.pace(&limits, T::one(), T::zero()); // (2)
+        Self { gains, options, pace }
     }
 }
 

@@ -19,9 +19,6 @@ use stormpetrel_control::signals::Trajectory;
 /// A quantity and its first four derivatives.
 pub type Jet<T> = [T; 5];
 
-/// Largest value of S' in (1), at u = 1/2.
-pub const STEEPEST: f64 = 35.0 / 16.0;
-
 /// A ramp shorter than this counts as none, s.
 const SHORTEST: f64 = 1e-3;
 

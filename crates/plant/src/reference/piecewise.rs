@@ -73,12 +73,13 @@ impl Curve {
         self.pieces.last().map_or(1.0, |piece| piece.begin + piece.length)
     }
 
-    /// The fastest pace, phase per second, that keeps to the limits where the pace itself changes by at
-    /// most `change` of its value in a second: A p^2 + V p change <= a, solved for p.
-    pub fn pace<T: Real>(&self, limits: &Limits<T>, change: T) -> T {
+    /// The fastest full pace p, phase per second, that keeps to the limits where it is flown at p `share`
+    /// and that changes by p `change` in a second: A (share p)^2 + V change p <= a, solved for p.
+    pub fn pace<T: Real>(&self, limits: &Limits<T>, share: T, change: T) -> T {
         let (tiny, two) = (T::lit(TINY), T::lit(2.0));
+        let a = T::lit(self.acceleration) * share.sq();
         let b = T::lit(self.speed) * change;
-        let root = (b.sq() + T::lit(4.0 * self.acceleration) * limits.acceleration).sqrt();
+        let root = (b.sq() + T::lit(4.0) * a * limits.acceleration).sqrt();
         let by_acceleration = two * limits.acceleration / (b + root).max(tiny);
         by_acceleration
             .min(limits.speed / T::lit(self.speed).max(tiny))

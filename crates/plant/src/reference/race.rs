@@ -8,9 +8,9 @@
 //! distance in m, so the derivative by s in the gates is a unit vector: the vehicle passes all at one speed.
 //! The vehicle's heading is that of the gates, the short way from gate to gate.
 //!   s(t) = p phi(t),   phi' from 0 to 1 in the first `ramp` seconds, back in the last   (2)
-//!   p V <= speed,  p^2 A + p V 35/(16 ramp) <= acceleration,  p Y <= yaw_rate           (3)
-//! where V, A, Y are the largest derivatives of the curve and 35/(16 ramp) the largest phi''. The ramps of
-//! start and end do not overlap: p is less if they would.
+//!   p V <= speed,  (p phi')^2 A + p phi'' V <= acceleration,  p Y <= yaw_rate           (3)
+//! where V, A, Y are the largest derivatives of the curve. The ramps of start and end do not overlap: p is
+//! less if they would.
 //!
 //! The width of the gates does not change the path; `stormpetrel preview` draws them.
 //!
@@ -21,7 +21,7 @@ use stormpetrel_control::signals::Trajectory;
 use stormpetrel_control::{columns, options, options::Rows, record};
 
 use super::Refer;
-use super::phase::{Jet, STEEPEST, from_rest};
+use super::phase::{Jet, from_rest};
 use super::piecewise::{Curve, Limits};
 use crate::vehicle::Vehicle;
 
@@ -77,14 +77,22 @@ record! {
     }
 }
 
+/// Points of the ramp at which (3) is asked; between them it is broken by less than the margin of V and A.
+const RAMP_POINTS: u32 = 64;
+
 impl<T: Real> Race<T> {
     /// The reference.
     pub fn new(gains: Gains<T>, options: Options, _: &Vehicle<T>) -> Self {
         let Gains { speed, acceleration, yaw_rate, laps, ramp, .. } = gains;
         let limits = Limits { speed, acceleration, yaw_rate };
         let curve = &options.curve;
-        let pace = curve.pace(&limits, T::lit(STEEPEST) / ramp); // (3)
-        Self { gains, options, pace: pace.min(laps * T::lit(curve.end()) / ramp) }
+        let mut pace = laps * T::lit(curve.end()) / ramp;
+        for i in 0..=RAMP_POINTS {
+            let time = ramp * T::lit(f64::from(i) / f64::from(RAMP_POINTS));
+            let [_, share, change, ..] = from_rest(time, ramp);
+            pace = pace.min(curve.pace(&limits, share, change)); // (3)
+        }
+        Self { gains, options, pace }
     }
 
     /// Duration of all laps, s.
