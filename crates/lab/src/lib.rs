@@ -13,6 +13,7 @@ pub mod metric;
 pub mod output;
 pub mod page;
 pub mod plot;
+pub mod preview;
 pub mod reproduce;
 pub mod scenario;
 pub mod sensitivity;

@@ -391,3 +391,28 @@ fn headings_of_a_table_are_unwrapped() {
         assert!((reference.at(t).yaw - 0.8 * t).abs() < 1e-6, "{t} s");
     }
 }
+
+#[test]
+fn a_fit_between_rests_begins_and_ends_at_rest() {
+    let rest = |t: f64| {
+        let u = (t / 6.0).clamp(0.0, 1.0);
+        35.0 * u.powi(4) - 84.0 * u.powi(5) + 70.0 * u.powi(6) - 20.0 * u.powi(7)
+    };
+    let mut random = Random(3);
+    let row = |i: i32| {
+        let t = 0.05 * f64::from(i);
+        vec![t, 3.0 * rest(t) + 0.002 * random.next(), 0.002 * random.next(), 1.0, 0.0]
+    };
+    let all: Vec<_> = (0..=120).map(row).collect();
+    let text = format!("shape = \"table\", ends = \"rest\", rows = {}", rows(&all));
+    let (reference, curve) = (reference(&text), curve(&text));
+    for t in [0.0, curve.end() - 1e-13] {
+        let at = by_phase(&curve, t);
+        let moving = at.velocity.norm() + at.acceleration.norm() + at.jerk.norm();
+        assert!(moving < 1e-8, "{t} s: {moving}");
+    }
+    for i in 0..600 {
+        let t = 0.01 * f64::from(i);
+        assert!((reference.at(t).position.x - 3.0 * rest(t)).abs() < 0.003, "{t} s");
+    }
+}

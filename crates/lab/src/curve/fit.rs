@@ -6,6 +6,8 @@ use super::banded::Banded;
 
 /// Degree of the splines.
 const DEGREE: usize = 5;
+/// Coefficients at each end that equal their neighbour where the first three derivatives vanish.
+const RESTING: usize = 3;
 /// Distances below this are rounding and no reason for another knot, m.
 const ROUNDING: f64 = 1e-9;
 
@@ -17,15 +19,17 @@ pub(super) struct Fit {
 }
 
 /// The fit whose number of pieces makes the generalised cross-validation least. `columns`: x, y, z, yaw;
-/// `times` grow from zero.
-pub(super) fn fit(times: &[f64], columns: &[Vec<f64>; 4]) -> Option<Fit> {
+/// `times` grow from zero. With `rest` the first three derivatives vanish at both ends.
+pub(super) fn fit(times: &[f64], columns: &[Vec<f64>; 4], rest: bool) -> Option<Fit> {
     let rows = times.len() as f64;
+    let merged = if rest { RESTING } else { 0 };
     let mut best: Option<(f64, Spline)> = None;
-    let mut count = 1;
+    // A fit between two rests has at least its two ends.
+    let mut count = if rest { 3 } else { 1 };
     // At least two rows for each piece.
     while 2 * count + DEGREE < times.len() {
-        let spline = Spline::new(times, columns, count)?;
-        let freedom = rows - (count + DEGREE) as f64;
+        let spline = Spline::new(times, columns, count, merged)?;
+        let freedom = rows - (count + DEGREE - 2 * merged) as f64;
         let sum: f64 = spline.distances(times, columns).map(|d| d * d).sum();
         let score = (sum + rows * ROUNDING * ROUNDING) * rows / (freedom * freedom);
         if best.as_ref().is_none_or(|(least, _)| score < *least) {
@@ -51,27 +55,37 @@ struct Spline {
 
 impl Spline {
     /// The least-squares splines with this number of pieces.
-    fn new(times: &[f64], columns: &[Vec<f64>; 4], count: usize) -> Option<Self> {
-        let last = times.len() - 1;
+    /// The first coefficients, `merged` more than one, are one number, and so are the last.
+    fn new(times: &[f64], columns: &[Vec<f64>; 4], count: usize, merged: usize) -> Option<Self> {
+        let (last, size) = (times.len() - 1, count + DEGREE - 2 * merged);
+        let unknown = |weight: usize| {
+            let after = weight.saturating_sub(merged);
+            if after < size { after } else { size - 1 }
+        };
         let mut knots = vec![times[0]; DEGREE];
         knots.extend((0..=count).map(|i| times[i * last / count]));
         knots.extend([times[last]; DEGREE]);
-        let mut normal = Banded::new(count + DEGREE, DEGREE);
-        let mut right = [(); 4].map(|()| vec![0.0; count + DEGREE]);
+        let mut normal = Banded::new(size, DEGREE);
+        let mut right = [(); 4].map(|()| vec![0.0; size]);
         for (row, time) in times.iter().enumerate() {
             let span = span(&knots, *time);
             let basis = basis(&knots, span, *time);
             for (a, of_a) in basis.iter().enumerate() {
+                let at = unknown(span - DEGREE + a);
                 for (b, of_b) in basis.iter().enumerate() {
-                    normal.add(span - DEGREE + a, span - DEGREE + b, of_a * of_b);
+                    normal.add(at, unknown(span - DEGREE + b), of_a * of_b);
                 }
                 for (right, column) in right.iter_mut().zip(columns) {
-                    right[span - DEGREE + a] += of_a * column[row];
+                    right[at] += of_a * column[row];
                 }
             }
         }
         let factor = normal.factor()?;
-        Some(Self { knots, weights: right.map(|right| factor.solve(right)) })
+        let weights = right.map(|right| {
+            let found = factor.solve(right);
+            (0..count + DEGREE).map(|weight| found[unknown(weight)]).collect()
+        });
+        Some(Self { knots, weights })
     }
 
     /// Distance of each row from the fit, m.

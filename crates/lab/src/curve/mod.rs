@@ -15,6 +15,7 @@ use stormpetrel_control::options::Cells;
 use stormpetrel_control::real::Real;
 use stormpetrel_plant::reference::ReferenceSettings;
 use stormpetrel_plant::reference::piecewise::{Curve, Piece};
+use stormpetrel_plant::reference::table::Ends;
 
 use snap::Course;
 
@@ -60,7 +61,10 @@ pub fn prepare(reference: &mut ReferenceSettings) -> Result<(), Unfit> {
             options.curve = once("gates", options.gates.table, round)?;
         }
         ReferenceSettings::Table(_, options) => {
-            options.curve = once("rows", options.rows.table, along)?;
+            options.curve = match options.ends {
+                Ends::Free => once("rows", options.rows.table, |cells| along(cells, false))?,
+                Ends::Rest => once("rows at rest", options.rows.table, |cells| along(cells, true))?,
+            };
         }
         _ => {}
     }
@@ -70,12 +74,13 @@ pub fn prepare(reference: &mut ReferenceSettings) -> Result<(), Unfit> {
 /// Result of making a curve: what is wrong and what to do otherwise.
 type Made = Result<Curve, (String, &'static str)>;
 
-/// The curve of this table, made the first time. Equal tables are kept once, so their place is their name.
-fn once(key: &'static str, table: Cells, make: fn(&[f64]) -> Made) -> Result<Curve, Unfit> {
+/// The curve of this kind through this table, made the first time. The kind begins with the table's key. Equal tables are kept once, so their place is their name.
+fn once(kind: &'static str, table: Cells, make: fn(&[f64]) -> Made) -> Result<Curve, Unfit> {
     static CURVES: Mutex<BTreeMap<(&str, usize), Made>> = Mutex::new(BTreeMap::new());
     let mut curves = CURVES.lock().unwrap_or_else(PoisonError::into_inner);
-    let place = (key, table.cells.as_ptr().addr());
+    let place = (kind, table.cells.as_ptr().addr());
     let made = curves.entry(place).or_insert_with(|| make(table.cells)).clone();
+    let key = kind.split(' ').next().unwrap_or(kind);
     made.map_err(|(message, help)| Unfit { key, message, help })
 }
 
@@ -85,8 +90,8 @@ const NO_SOLUTION: &str = "bring the points to distances that differ less";
 fn through(cells: &[f64]) -> Made {
     let [x, y, z, yaw] = columns(cells);
     let yaw = unwrapped(&yaw);
-    let all = [x, y, z, yaw];
-    let lengths = lengths(&all, "waypoint")?;
+    let (rows, all) = (x.len(), [x, y, z, yaw]);
+    let lengths = lengths(&all, ("waypoint", rows))?;
     let last = lengths.len();
     let given = |i: usize| if i == 0 || i == last { [Some(0.0); 3] } else { [None; 3] };
     let courses = all.map(|values| {
@@ -99,10 +104,11 @@ fn through(cells: &[f64]) -> Made {
 /// Minimum snap round a track through the centres of gates, along their headings.
 fn round(cells: &[f64]) -> Made {
     let [mut x, mut y, mut z, mut yaw] = columns(cells);
+    let rows = x.len();
     for column in [&mut x, &mut y, &mut z, &mut yaw] {
         column.push(column[0]);
     }
-    let lengths = lengths(&[x.clone(), y.clone(), z.clone()], "gate")?;
+    let lengths = lengths(&[x.clone(), y.clone(), z.clone()], ("gate", rows))?;
     let directions: Vec<(f64, f64)> = yaw.iter().map(|yaw| Real::sin_cos(*yaw)).collect();
     let yaw = unwrapped(&yaw);
     let turn = yaw[yaw.len() - 1] - yaw[0];
@@ -118,12 +124,12 @@ fn round(cells: &[f64]) -> Made {
     finished(&lengths, &courses, turn)
 }
 
-/// A fit of a recording.
-fn along(cells: &[f64]) -> Made {
+/// A fit of a recording; with `rest` between two rests.
+fn along(cells: &[f64], rest: bool) -> Made {
     let [t, x, y, z, yaw] = columns(cells);
     let times: Vec<f64> = t.iter().map(|time| time - t[0]).collect();
-    let Some(fit) = fit::fit(&times, &[x, y, z, unwrapped(&yaw)]) else {
-        return Err(("has no fit".into(), "space the rows more evenly in time"));
+    let Some(fit) = fit::fit(&times, &[x, y, z, unwrapped(&yaw)], rest) else {
+        return Err(("has no fit".into(), "give at least 12 rows, evenly spaced in time"));
     };
     let pieces = Vec::leak(fit.pieces);
     Ok(Curve { pieces, worst_fit: fit.worst, mean_fit: fit.mean, ..Curve::default() })
@@ -145,10 +151,10 @@ fn unwrapped(angles: &[f64]) -> Vec<f64> {
     angles.iter().map(near).collect()
 }
 
-/// Distances between neighbours, headings counted in.
+/// Distances between neighbours, headings counted in. After the last of the `rows` may stand the first.
 fn lengths<const N: usize>(
     columns: &[Vec<f64>; N],
-    what: &str,
+    (what, rows): (&str, usize),
 ) -> Result<Vec<f64>, (String, &'static str)> {
     let count = columns.first().map_or(0, Vec::len);
     let step = |i: usize| {
@@ -159,7 +165,7 @@ fn lengths<const N: usize>(
     match lengths.iter().position(|length| *length < CLOSEST) {
         None => Ok(lengths),
         Some(i) => {
-            let message = format!("{what} {} is where {what} {} is", (i + 1) % count, i);
+            let message = format!("has {what} {} where {what} {i} is", (i + 1) % rows);
             Err((message, "take one of them out; rows count from zero"))
         }
     }

@@ -321,7 +321,7 @@ fn unfit(why: &curve::Unfit, tree: &Table) -> Fault {
         Some(Value::Table(table)) => table.get(why.key).map(|node| node.place.clone()),
         _ => None,
     };
-    let message = format!("`reference.{}`: {}", why.key, why.message);
+    let message = format!("`reference.{}` {}", why.key, why.message);
     Fault { place, message, help: Some(why.help.to_owned()) }
 }
 

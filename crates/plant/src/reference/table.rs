@@ -9,15 +9,16 @@
 //! least, so noise is smoothed and a clean path is followed. `stormpetrel check` prints the largest and the
 //! root mean square distance of the fit from the rows. Headings that jump by a whole turn are unwrapped.
 //!
-//! Time zero is the first row. After the last row the vehicle is to rest there, so a recording should end
-//! at rest.
+//! Time zero is the first row. After the last row the vehicle is to rest there. A fit whose `ends` are free
+//! stops with a jolt; `ends = "rest"` makes velocity, acceleration and jerk zero at both ends, where the
+//! recording begins and ends at rest.
 //!
 //! Source: de Boor, A Practical Guide to Splines (2001), chapter 14; Craven and Wahba, Numerische Mathematik
 //! 31 (1979) 377-403.
 
 use stormpetrel_control::real::Real;
 use stormpetrel_control::signals::Trajectory;
-use stormpetrel_control::{columns, options, options::Rows, record};
+use stormpetrel_control::{choice, columns, options, options::Rows, record};
 
 use super::Refer;
 use super::phase::until;
@@ -43,11 +44,23 @@ columns! {
     }
 }
 
+choice! {
+    /// How the fit begins and ends.
+    pub enum Ends {
+        /// As the rows say.
+        "free" => Free,
+        /// With velocity, acceleration and jerk zero.
+        "rest" => Rest,
+    }
+}
+
 options! {
     /// What is followed.
     pub struct Options {
         /// The path over time.
         rows: Rows<Recording>;
+        /// How the fit begins and ends.
+        ends: Ends;
         /// The fit.
         curve: Curve;
     }
