@@ -81,7 +81,7 @@ pub fn print(scenarios: &[Scenario], judged: &[Feasibility]) {
         let others = judged.iter().filter(|other| *other == feasibility).count() - 1;
         let name = printable(&scenario.name);
         let title = match others {
-            0 => name.to_string(),
+            0 => name.clone(),
             _ => format!("{name} and {others} more"),
         };
         terminal::print_table(&feasibility.table(&title), terminal::width());

@@ -90,7 +90,7 @@ pub fn course(scenario: &Scenario, most: u64) -> Vec<Demand> {
     let reference = scenario.reference.build(vehicle);
     let ticks = scenario.ticks();
     let stride = ticks.div_ceil(most - 1).max(1);
-    let last = (ticks % stride != 0).then_some(ticks);
+    let last = (!ticks.is_multiple_of(stride)).then_some(ticks);
     let moments = (0..=ticks / stride).map(|i| i * stride).chain(last);
     let time = |tick: u64| tick as f64 * scenario.run.control_step;
     moments.map(|tick| Demand::new(vehicle, time(tick), reference.at(time(tick)))).collect()

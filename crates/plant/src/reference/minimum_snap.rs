@@ -77,7 +77,7 @@ impl<T: Real> MinimumSnap<T> {
         let Gains { speed, acceleration, yaw_rate } = gains;
         let limits = Limits { speed, acceleration, yaw_rate };
         let pace = options.curve.pace(&limits, T::one(), T::zero()); // (2)
-        Self { gains, options, pace }
+        Self { gains, pace, options }
     }
 }
 

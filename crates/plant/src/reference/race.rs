@@ -92,7 +92,7 @@ impl<T: Real> Race<T> {
             let [_, share, change, ..] = from_rest(time, ramp);
             pace = pace.min(curve.pace(&limits, share, change)); // (3)
         }
-        Self { gains, options, pace }
+        Self { gains, pace, options }
     }
 
     /// Duration of all laps, s.
