@@ -90,7 +90,7 @@ pub fn print(scenarios: &[Scenario], judged: &[Feasibility]) {
             let head = format!("warning: {title}: the reference cannot be flown:");
             terminal::warn(&terminal::hang(&head, 9, terminal::width()));
             for warning in warnings {
-                terminal::warn(&terminal::hang(&format!("  {warning}"), 2, terminal::width()));
+                terminal::warn(&terminal::hang(&format!("  - {warning}"), 4, terminal::width()));
             }
         }
     }

@@ -247,9 +247,9 @@ fn check_warns_of_a_reference_that_cannot_be_flown_and_says_when() {
         warning.lines().collect::<Vec<_>>(),
         [
             "warning: references/circle: the reference cannot be flown:",
-            "  thrust 61.6 N at 3.01 s, limit 24.5: beyond by 37.0 N; from 1.66 to 20.00 s",
-            "  rotor thrust 15.4 N at 2.82 s, limit 6.13: beyond by 9.30 N; from 1.65 to 20.00 s",
-            "  rotor speed 4629 rad/s at 2.82 s, limit 2917: beyond by 1712 rad/s; from 1.65 to 20.00 s",
+            "  - thrust 61.6 N at 3.01 s, limit 24.5: beyond by 37.0 N; from 1.66 to 20.00 s",
+            "  - rotor thrust 15.4 N at 2.82 s, limit 6.13: beyond by 9.30 N; from 1.65 to 20.00 s",
+            "  - rotor speed 4629 rad/s at 2.82 s, limit 2917: beyond by 1712 rad/s; from 1.65 to 20.00 s",
         ]
     );
     let quiet = stormpetrel(&[&fast[..], &["--quiet"]].concat());

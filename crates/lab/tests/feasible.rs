@@ -5,7 +5,9 @@
 
 use std::f64::consts::PI;
 
-use stormpetrel_lab::feasible::{Feasibility, course, feasible};
+use stormpetrel_control::math::Vec3;
+use stormpetrel_control::signals::Trajectory;
+use stormpetrel_lab::feasible::{Demand, Feasibility, course, feasible};
 use stormpetrel_lab::fly::fly;
 use stormpetrel_lab::preview::{drawings, html};
 use stormpetrel_lab::scenario::{Scenario, load_text};
@@ -64,6 +66,37 @@ fn a_circle_needs_the_tilt_of_its_speed_and_radius() {
         assert!(worst(&judged, "body rate") >= turning * (1.0 - 1e-9));
         assert_eq!(judged.broken().count(), 0, "{speed} m/s");
     }
+}
+
+#[test]
+fn a_turn_with_the_nose_ahead_needs_the_torque_that_turns_the_spin() {
+    // The body turns about the vertical at w, which stands still in it: tau = omega x I omega, about the
+    // forward axis (I_z - I_y) w^2 sin(tilt) cos(tilt).
+    let text = "shape = \"circle\", radius = 2.0, speed = 5.0, heading = \"along\", ramp = 0";
+    let scenario = scenario(text, "rotors");
+    let (w, tilt) = (2.5f64, (12.5f64 / 9.8).atan());
+    let inertia = scenario.vehicle.vehicle.inertia;
+    let want = (inertia.z - inertia.y) * w * w * tilt.sin() * tilt.cos();
+    let judged = feasible(&scenario);
+    assert!((worst(&judged, "torque") - want).abs() < 1e-12, "{want}");
+    assert!((worst(&judged, "body rate") - w).abs() < 1e-12);
+    assert!(worst(&judged, "ang. accel.") < 1e-12);
+}
+
+#[test]
+fn a_rotor_that_would_have_to_pull_has_a_negative_speed() {
+    let vehicle = scenario("shape = \"hover\"", "rotors").vehicle.vehicle;
+    let snap = Vec3::new(5000.0, 0.0, 0.0);
+    let demand = Demand::new(&vehicle, 0.0, Trajectory { snap, ..Trajectory::default() });
+    // Pitching forwards at snap/g: the front rotor (1) pulls, the rear one (3) pushes, u = m g/4 -+ tau/(2 l).
+    let torque = vehicle.inertia.y * 5000.0 / 9.8;
+    let share = torque / (2.0 * vehicle.arm);
+    let [front, _, rear, _] = demand.rotor_thrust;
+    assert!((front - (0.625 * 9.8 / 4.0 - share)).abs() < 1e-12 && front < 0.0);
+    assert!((rear - (0.625 * 9.8 / 4.0 + share)).abs() < 1e-12);
+    let [front_speed, _, rear_speed, _] = demand.rotor_speed;
+    assert!((front_speed + (-front / 7.2e-7).sqrt()).abs() < 1e-9);
+    assert!((rear_speed - (rear / 7.2e-7).sqrt()).abs() < 1e-9);
 }
 
 #[test]
