@@ -74,7 +74,8 @@ pub fn prepare(reference: &mut ReferenceSettings) -> Result<(), Unfit> {
 /// Result of making a curve: what is wrong and what to do otherwise.
 type Made = Result<Curve, (String, &'static str)>;
 
-/// The curve of this kind through this table, made the first time. The kind begins with the table's key. Equal tables are kept once, so their place is their name.
+/// The curve of this kind through this table, made the first time. The kind begins with the table's key.
+/// Equal tables are kept once, so their place is their name.
 fn once(kind: &'static str, table: Cells, make: fn(&[f64]) -> Made) -> Result<Curve, Unfit> {
     static CURVES: Mutex<BTreeMap<(&str, usize), Made>> = Mutex::new(BTreeMap::new());
     let mut curves = CURVES.lock().unwrap_or_else(PoisonError::into_inner);
