@@ -6,8 +6,8 @@
 //!   t_a = min((sqrt(t_j^2 + 4 L/(j t_j)) - 3 t_j)/2, v/(j t_j) - t_j)    (2)
 //!   t_v = L/(j t_j (t_j + t_a)) - (2 t_j + t_a)                          (3)
 //! of constant jerk, constant acceleration and constant speed. While it speeds up,
-//!   s = j/6 (t^3 - <t - t_j>^3 - <t - t_j - t_a>^3)                      (4)
-//! with <x> = max(x, 0); the braking is its mirror image, s(t) = L - s(T - t), T = 4 t_j + 2 t_a + t_v.
+//!   s = j/6 (t^3 - pos(t - t_j)^3 - pos(t - t_j - t_a)^3)                (4)
+//! with pos(x) = max(x, 0); the braking is its mirror image, s(t) = L - s(T - t), T = 4 t_j + 2 t_a + t_v.
 //!
 //! Jerk is constant in each segment and jumps between them; the snap is zero inside and does not exist at
 //! the jumps, where zero is given. After T the vehicle rests at B.
