@@ -55,11 +55,16 @@ pub enum Command {
         after_help = "Example:\n  stormpetrel merge FILE out/part1 out/part2 --out out/whole"
     )]
     Merge(Merge),
-    /// Read a scenario file and say what is wrong with it, without flying
+    /// Read a scenario file and say what is wrong with it and whether its reference can be flown
     #[command(
         after_help = "Example:\n  stormpetrel check scenarios/first-flight.toml --set position.kp=8"
     )]
     Check(Check),
+    /// Draw what a scenario asks for, without flying: path, motion, thrust, rotor speeds
+    #[command(
+        after_help = "Examples:\n  stormpetrel preview scenarios/references/race.toml\n  stormpetrel preview scenarios/references/race.toml --set reference.speed=8 --out out/fast\n\nThen open out/preview/preview.html in a browser."
+    )]
+    Preview(Preview),
     /// List what a scenario can name: laws, vehicles, references, metrics, shipped files
     #[command(
         after_help = "Examples:\n  stormpetrel list\n  stormpetrel list observer\n  stormpetrel list --json"
@@ -166,6 +171,23 @@ pub struct Check {
     /// Change a setting: dotted path and value; may be given often
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub sets: Vec<String>,
+}
+
+/// Arguments of `preview`.
+#[derive(Group)]
+pub struct Preview {
+    /// Scenario file
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Draw this variant only
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+    /// Change a setting: dotted path and value; may be given often
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub sets: Vec<String>,
+    /// Folder for page and figures
+    #[arg(long, value_name = "DIR", default_value = "out/preview")]
+    pub out: PathBuf,
 }
 
 /// Arguments of `list`.

@@ -7,6 +7,7 @@ mod args;
 mod check;
 mod explain;
 mod list;
+mod preview;
 mod reproduce;
 mod run;
 mod sweep;
@@ -72,6 +73,7 @@ fn main() -> ExitCode {
         Command::Sweep(sweep) => sweep::sweep(sweep, &args.common),
         Command::Merge(merge) => sweep::merge(merge, &args.common),
         Command::Check(check) => check::check(check, &args.common),
+        Command::Preview(preview) => preview::preview(preview, &args.common),
         Command::List(list) => list::list(list, &args.common),
         Command::Explain(explain) => explain::explain(explain, &args.common),
         Command::Schema => terminal::print_json(&stormpetrel_lab::scenario::schema()),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use serde_json::{Map, Value, json};
-use stormpetrel_lab::figures;
+use stormpetrel_lab::figures::{self, Drawing};
 use stormpetrel_lab::fly::fly;
 use stormpetrel_lab::log::Csv;
 use stormpetrel_lab::output::{Folder, manifest_json, metrics_json, variants_json};
@@ -28,21 +28,13 @@ pub fn run(args: &Run, common: &Common) -> Result<(), Failure> {
         return Err(Faults::from(fault).into());
     }
     let broken = |error| Failure::out(&args.out, &error);
-    let parts = parts(&scenarios);
-    let folder = Folder::with_parts(&args.out, &parts).map_err(broken)?;
-    if !parts.is_empty() {
-        let manifest = format!("{:#}\n", variants_json(&parts));
-        folder.write("manifest.json", manifest.as_bytes()).map_err(broken)?;
-    }
+    let folder = begin(&args.out, &scenarios).map_err(broken)?;
     let bar = terminal::progress("flying", common.quiet || common.json);
     bar.set_length(scenarios.len() as u64);
     let single = scenarios.len() == 1;
     let mut flights = Vec::new();
     for scenario in scenarios {
-        let prefix = match &scenario.variant {
-            Some(variant) if !single => format!("{variant}/"),
-            _ => String::new(),
-        };
+        let prefix = prefix(&scenario, single);
         flights.push(fly_into(&folder, &prefix, scenario).map_err(broken)?);
         bar.inc(1);
     }
@@ -51,13 +43,33 @@ pub fn run(args: &Run, common: &Common) -> Result<(), Failure> {
     report(&flights, &args.out, common)
 }
 
+/// A result folder with a folder for each variant, where there are several.
+pub fn begin(out: &Path, scenarios: &[Scenario]) -> std::io::Result<Folder> {
+    let parts = parts(scenarios);
+    let folder = Folder::with_parts(out, &parts)?;
+    if !parts.is_empty() {
+        let manifest = format!("{:#}\n", variants_json(&parts));
+        folder.write("manifest.json", manifest.as_bytes())?;
+    }
+    Ok(folder)
+}
+
+/// Where in the result folder the files of a flight stand.
+pub fn prefix(scenario: &Scenario, single: bool) -> String {
+    match &scenario.variant {
+        Some(variant) if !single => format!("{variant}/"),
+        _ => String::new(),
+    }
+}
+
 /// Folders in the result folder: one a variant, where there are several.
 fn parts(scenarios: &[Scenario]) -> Vec<&str> {
     let several = scenarios.len() > 1;
     scenarios.iter().filter(|_| several).filter_map(|s| s.variant.as_deref()).collect()
 }
 
-fn choose(file: File, variant: Option<&str>) -> Result<Vec<Scenario>, Failure> {
+/// The flights of the file, or the one variant that is asked for.
+pub fn choose(file: File, variant: Option<&str>) -> Result<Vec<Scenario>, Failure> {
     let Some(variant) = variant else { return Ok(file.scenarios) };
     let known: Vec<_> = file.scenarios.iter().filter_map(|s| s.variant.clone()).collect();
     let chosen: Vec<_> =
@@ -95,12 +107,18 @@ pub fn fly_into(folder: &Folder, prefix: &str, scenario: Scenario) -> std::io::R
     folder.write(&format!("{prefix}metrics.json"), metrics.as_bytes())?;
     folder
         .write(&format!("{prefix}manifest.json"), pretty(&manifest_json(&scenario)).as_bytes())?;
-    for drawing in figures::all(&scenario, &trace) {
+    draw(folder, prefix, &figures::all(&scenario, &trace))?;
+    Ok(Flown { scenario, outcome, spread, trace })
+}
+
+/// Writes figures as SVG and PNG.
+pub fn draw(folder: &Folder, prefix: &str, drawings: &[Drawing]) -> std::io::Result<()> {
+    for drawing in drawings {
         folder.write(&format!("{prefix}{}.svg", drawing.name), drawing.svg.as_bytes())?;
         let image = png(&drawing.svg, 1.0).map_err(std::io::Error::other)?;
         folder.write(&format!("{prefix}{}.png", drawing.name), &image)?;
     }
-    Ok(Flown { scenario, outcome, spread, trace })
+    Ok(())
 }
 
 /// Says what the flights came to; fails where an expectation or a flight did.

@@ -15,11 +15,16 @@ pub struct Drawing {
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-fn series<'a>(label: impl Into<String>, x: &'a [f64], y: &'a [f64], style: usize) -> Series<'a> {
+pub(crate) fn series<'a>(
+    label: impl Into<String>,
+    x: &'a [f64],
+    y: &'a [f64],
+    style: usize,
+) -> Series<'a> {
     Series { label: label.into(), x, y, style, ..Series::default() }
 }
 
-fn panel<'a>(title: &str, y_label: &str, series: Vec<Series<'a>>) -> Panel<'a> {
+pub(crate) fn panel<'a>(title: &str, y_label: &str, series: Vec<Series<'a>>) -> Panel<'a> {
     Panel {
         title: title.into(),
         x_label: "time (s)".into(),
@@ -32,7 +37,7 @@ fn panel<'a>(title: &str, y_label: &str, series: Vec<Series<'a>>) -> Panel<'a> {
 /// Path against reference.
 pub fn path(title: &str, trace: &Trace) -> Drawing {
     fn of<'a>(label: &str, [x, y, z]: &'a Axes, style: usize) -> Path<'a> {
-        Path { label: label.into(), x, y, z, style }
+        Path { label: label.into(), x, y, z, style, bare: false }
     }
     let scene = Scene {
         title: format!("{title}: flown path against the reference"),

@@ -4,6 +4,8 @@
 mod batch;
 pub mod campaign;
 pub mod catalogue;
+pub mod curve;
+pub mod feasible;
 pub mod figures;
 pub mod fly;
 pub mod log;
@@ -11,6 +13,7 @@ pub mod metric;
 pub mod output;
 pub mod page;
 pub mod plot;
+pub mod preview;
 pub mod reproduce;
 pub mod scenario;
 pub mod sensitivity;

@@ -17,7 +17,7 @@ use stormpetrel_control::options::{Cells, OptionVisitor, Shape};
 use stormpetrel_control::record::{Meta, Path, RecordExt, VisitorMut};
 use stormpetrel_control::registry::Settings;
 use stormpetrel_plant::disturbance::{Site, SourceSettings};
-use stormpetrel_plant::flight::{Cause, Flight};
+use stormpetrel_plant::flight::{Cause, Flight, Tick};
 use stormpetrel_plant::timing::{Delays, Timing};
 
 const LANES: usize = 8;
@@ -58,13 +58,20 @@ fn singles(actuation: &str, observer: ObserverSettings) -> [Flight<f64>; LANES] 
     })
 }
 
+/// One tick of eight flights; compiled once for all tests.
+#[inline(never)]
+fn tick_of(lanes: &mut Flight<Lanes<f64, LANES>>) -> Tick<Lanes<f64, LANES>> {
+    let decided = lanes.decide();
+    lanes.advance(&decided);
+    decided
+}
+
 fn compare(actuation: &str, observer: ObserverSettings) {
     let mut singles = singles(actuation, observer);
     let mut lanes: Flight<Lanes<f64, LANES>> =
         RecordExt::<f64>::gather(core::array::from_fn(|i| &singles[i]));
     for tick in 0..TICKS {
-        let decided = lanes.decide();
-        lanes.advance(&decided);
+        let decided = tick_of(&mut lanes);
         for (i, single) in singles.iter_mut().enumerate() {
             if tick % 50 == 7 {
                 let one = single.decide();
@@ -202,8 +209,7 @@ fn compare_worlds(kinds: &[&str]) {
     let mut lanes: Flight<Lanes<f64, LANES>> =
         RecordExt::<f64>::gather(core::array::from_fn(|i| &singles[i]));
     for tick in 0..400 {
-        let decided = lanes.decide();
-        lanes.advance(&decided);
+        tick_of(&mut lanes);
         for (i, single) in singles.iter_mut().enumerate() {
             step(single);
             assert_eq!(bits(&lanes.pick(i)), bits(single), "{kinds:?}, lane {i}, tick {tick}");
@@ -259,8 +265,7 @@ fn eight_flights_with_other_laws_have_the_bits_of_single_ones() {
         let mut lanes: Flight<Lanes<f64, LANES>> =
             RecordExt::<f64>::gather(core::array::from_fn(|i| &singles[i]));
         for tick in 0..TICKS / 4 {
-            let decided = lanes.decide();
-            lanes.advance(&decided);
+            tick_of(&mut lanes);
             for (i, single) in singles.iter_mut().enumerate() {
                 step(single);
                 assert_eq!(bits(&lanes.state.pick(i)), bits(&single.state), "lane {i}, {tick}");

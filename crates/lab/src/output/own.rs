@@ -14,10 +14,21 @@ use super::PROGRAM;
 use super::folder::PREFIX;
 use super::refused::refuse;
 
-/// Data of a flight, report of the article.
-const FILES: [&str; 4] = ["flight.csv", "metrics.json", "manifest.json", "report.html"];
+/// Data of a flight, report of the article, preview of a flight.
+const FILES: [&str; 5] =
+    ["flight.csv", "metrics.json", "manifest.json", "report.html", "preview.html"];
 /// Figures, as SVG and PNG.
-const FIGURES: [&str; 5] = ["path", "errors", "disturbance", "commands", "rotors"];
+const FIGURES: [&str; 9] = [
+    "path",
+    "errors",
+    "disturbance",
+    "commands",
+    "rotors",
+    "preview-path",
+    "preview-motion",
+    "preview-demand",
+    "preview-rotors",
+];
 /// Folder of the report's figures.
 const PICTURES: &str = "figures";
 /// Longest manifest that is read, in bytes.

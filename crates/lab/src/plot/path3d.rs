@@ -16,7 +16,8 @@ const ROOM: Point = (660.0, 400.0);
 /// Where the labelled edge of each axis begins, in the unit box.
 const EDGES: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]];
 
-/// A path in metres; its beginning is marked by an open dot and its end by a full one.
+/// A path in metres; its beginning is marked by an open dot and its end by a full one. Points that are not
+/// finite break it.
 #[derive(Clone, Debug, Default)]
 pub struct Path<'a> {
     /// Name in the legend; empty for none.
@@ -29,6 +30,8 @@ pub struct Path<'a> {
     pub z: &'a [f64],
     /// Colour and dash pattern together, as an index that wraps round.
     pub style: usize,
+    /// Whether the dots at its ends and its shadow are left out, as for marks.
+    pub bare: bool,
 }
 
 /// Paths in a box with a floor, 860 pixels wide.
@@ -69,13 +72,15 @@ impl Scene<'_> {
         for axis in 0..3 {
             view.labels(&mut page, axis);
         }
-        let lines: Vec<_> = self.paths.iter().map(|p| (p.style, view.lines(p))).collect();
-        for (style, (_, shadow)) in &lines {
-            page.shadow(shadow, *style);
+        let lines: Vec<_> = self.paths.iter().map(|p| (p, view.lines(p))).collect();
+        for (path, (_, shadow)) in lines.iter().filter(|(path, _)| !path.bare) {
+            page.shadow(shadow, path.style);
         }
-        for (style, (line, _)) in &lines {
-            page.curve(line, *style);
-            ends(&mut page, line, *style);
+        for (path, (line, _)) in &lines {
+            page.curve(line, path.style);
+            if !path.bare {
+                ends(&mut page, line, path.style);
+            }
         }
         let mut note = "open dot: start, full dot: end, pale: shadow on the floor".to_owned();
         if !view.equal {

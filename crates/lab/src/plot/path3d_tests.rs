@@ -3,7 +3,7 @@
 use super::*;
 
 fn checked(x: &[f64], y: &[f64], z: &[f64]) -> String {
-    let path = Path { label: "flown & planned".into(), x, y, z, style: 1 };
+    let path = Path { label: "flown & planned".into(), x, y, z, style: 1, bare: false };
     let scene = Scene { title: "Path".into(), description: "<d>".into(), paths: vec![path] };
     let svg = scene.svg();
     assert!(resvg::usvg::Tree::from_str(&svg, &resvg::usvg::Options::default()).is_ok(), "{svg}");

@@ -9,6 +9,7 @@ use stormpetrel_control::registry::Settings;
 use stormpetrel_plant::disturbance::MOST;
 
 use crate::campaign::{plan, sweep};
+use crate::curve;
 use crate::metric::{names, of_attitude};
 
 use super::document::{Entry, Node, Table, Value, missing_items, not_to_set, parse, parse_set};
@@ -282,6 +283,9 @@ fn read_scenario(
     };
     scenario.blocks(&mut loader);
     let Loader { known, mut faults, broken, .. } = loader;
+    if !broken.contains(&"reference") {
+        faults.extend(curve::prepare(&mut scenario.reference).err().map(|why| unfit(&why, tree)));
+    }
     for entry in &tree.0 {
         match (entry.key.as_str(), &entry.node.value) {
             ("title", Value::Text(text)) => scenario.title.clone_from(text),
@@ -309,6 +313,16 @@ fn read_scenario(
     check_metrics(&scenario, &broken, &mut faults);
     check_whole(&scenario, tree, &broken, &mut faults);
     if faults.is_empty() { Ok(scenario) } else { Err(faults) }
+}
+
+/// A table of the reference through which there is no curve.
+fn unfit(why: &curve::Unfit, tree: &Table) -> Fault {
+    let place = match tree.get("reference").map(|node| &node.value) {
+        Some(Value::Table(table)) => table.get(why.key).map(|node| node.place.clone()),
+        _ => None,
+    };
+    let message = format!("`reference.{}` {}", why.key, why.message);
+    Fault { place, message, help: Some(why.help.to_owned()) }
 }
 
 /// What is wrong with the shape of a campaign; whether its paths exist is seen when it is loaded.

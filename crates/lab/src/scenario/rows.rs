@@ -148,15 +148,13 @@ fn parse(source: &Arc<Source>, shape: &Shape, faults: &mut Vec<Fault>) -> Vec<Ro
         for (cell, column) in cells.iter().zip(&wanted) {
             let here = place(at..at + cell.len());
             at += cell.len() + 1;
-            match cell.trim().parse::<f64>() {
-                Ok(x) => row.push((here, x)),
-                Err(_) => {
-                    let message = format!("`{column}` = {:?}: must be a number", cell.trim());
-                    let help = "a gap in a recording must be filled or cut out";
-                    faults.push(Fault::new(&here, message).help(help));
-                    return rows;
-                }
-            }
+            let Ok(x) = cell.trim().parse::<f64>() else {
+                let message = format!("`{column}` = {:?}: must be a number", cell.trim());
+                let help = "a gap in a recording must be filled or cut out";
+                faults.push(Fault::new(&here, message).help(help));
+                return rows;
+            };
+            row.push((here, x));
         }
         rows.push(row);
         if rows.len() > shape.rows.1 {

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::document::LONGEST;
 use super::fault::{Fault, Faults};
+use crate::shipped;
 
 /// The text of a file; never more of it than a scenario may have.
 pub(super) fn read(path: &Path, shown: &str) -> Result<String, Faults> {
@@ -39,8 +40,12 @@ pub(super) fn read(path: &Path, shown: &str) -> Result<String, Faults> {
 /// Largest CSV file that is read, in bytes.
 pub(super) const MOST_BYTES_OF_TABLE: u64 = 1 << 26;
 
-/// The text of a CSV file, or why it cannot be had.
+/// The text of a CSV file, or why it cannot be had. Those of shipped scenarios are found without a disk.
 pub(super) fn table(path: &Path) -> Result<String, String> {
+    from_disk(path).or_else(|why| shipped::table(path).map(str::to_owned).ok_or(why))
+}
+
+fn from_disk(path: &Path) -> Result<String, String> {
     let size = std::fs::metadata(path).map_err(|error| error.to_string())?;
     if !size.is_file() {
         return Err("is not a file".into());

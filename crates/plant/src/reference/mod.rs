@@ -8,6 +8,9 @@ use stormpetrel_control::signals::Trajectory;
 
 use crate::vehicle::Vehicle;
 
+pub mod phase;
+pub mod piecewise;
+
 /// A trajectory with all derivatives.
 pub trait Refer<T: Real>: Plain<T> {
     /// The reference `time` seconds after the start.
@@ -35,4 +38,11 @@ registry! {
     dispatch dispatch_refer ();
     "hover" => Hover in hover;
     "helix" => Helix in helix;
+    "line" => Line in line;
+    "circle" => Circle in circle;
+    "lemniscate" => Lemniscate in lemniscate;
+    "lissajous" => Lissajous in lissajous;
+    "minimum-snap" => MinimumSnap in minimum_snap;
+    "race" => Race in race;
+    "table" => Table in table;
 }
