@@ -15,7 +15,6 @@ use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
 
 use crate::actuation::Actuate;
-use crate::sling::Sling;
 use crate::state::{Derivative, State};
 use crate::vehicle::Vehicle;
 
@@ -72,40 +71,16 @@ record! {
         push_per_mass: Vec3<T, World> [m/s^2];
         /// Disturbance torque.
         torque: Vec3<T, Body> [N m];
-        /// Reciprocal mass.
-        per_mass: T [1/kg];
         /// Reciprocal moments of inertia.
         per_inertia: Vec3<T, Body> [1/(kg m^2)];
-        /// Wind.
-        wind: Vec3<T, World> [m/s];
-        /// What hangs from the vehicle.
-        sling: Sling<T> [];
-        /// Mass without over mass with a payload.
-        share: T [1];
-        /// Centre of mass from the rotors' centre, payload included.
-        shift: Vec3<T, Body> [m];
-        structure {
-            /// Whether the centre of mass may lie off the rotors' centre.
-            laden: bool;
-            /// Whether the air acts on the body.
-            airy: bool;
-            /// Whether something hangs from it.
-            hangs: bool;
-        }
     }
 }
 
 impl<T: Real> Held<T> {
-    /// For this vehicle and push, in air that does not act and with nothing on a cable.
+    /// For this vehicle and push.
     #[inline(always)]
     pub fn new(per: &Reciprocals<T>, push: &Push<T>) -> Self {
-        Held {
-            push_per_mass: push.force * per.mass,
-            torque: push.torque,
-            per_mass: per.mass,
-            per_inertia: per.inertia,
-            ..Held::default()
-        }
+        Held { push_per_mass: push.force * per.mass, torque: push.torque, per_inertia: per.inertia }
     }
 }
 

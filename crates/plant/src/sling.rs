@@ -19,8 +19,6 @@ use stormpetrel_control::math::{Vec3, World};
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
 
-use crate::state::State;
-
 record! {
     /// What hangs, and on which cable.
     pub struct Sling {
@@ -30,6 +28,16 @@ record! {
         length: T [m];
         /// Damping across the cable.
         damping: T [N s/m];
+    }
+}
+
+record! {
+    /// Where it hangs.
+    pub struct Hanging {
+        /// From the vehicle's centre of mass, r.
+        place: Vec3<T, World> [m];
+        /// Velocity relative to the vehicle's, r'.
+        velocity: Vec3<T, World> [m/s];
     }
 }
 
@@ -48,7 +56,7 @@ record! {
 /// The cable in this state, (2) to (4); `free` is u, m/s^2.
 #[inline(always)]
 pub fn hang<T: Real>(
-    state: &State<T>,
+    hanging: &Hanging<T>,
     free: Vec3<T, World>,
     per_mass: T,
     sling: &Sling<T>,
@@ -56,7 +64,7 @@ pub fn hang<T: Real>(
     let on = T::zero().lt(sling.mass);
     let per_length = T::one() / T::select(on, sling.length, T::one());
     let per_cargo = T::one() / T::select(on, sling.mass, T::one());
-    let (q, turning) = (state.cargo * per_length, state.cargo_velocity);
+    let (q, turning) = (hanging.place * per_length, hanging.velocity);
     let both = per_mass + per_cargo;
     let tension = (turning.norm_squared() * per_length - q.dot(free)) / both; // (2)
     let tension = T::select(on, tension.max(T::zero()), T::zero());
@@ -72,11 +80,23 @@ pub fn hang<T: Real>(
 impl<T: Real> Sling<T> {
     /// Puts the cable back to its length (1).
     #[inline(always)]
-    pub fn tighten(&self, state: &mut State<T>) {
+    pub fn tighten(&self, hanging: &mut Hanging<T>) {
         let on = T::zero().lt(self.mass);
-        let q = state.cargo.unit();
-        let across = state.cargo_velocity - q * q.dot(state.cargo_velocity);
-        state.cargo = Vec3::select(on, q * self.length, state.cargo);
-        state.cargo_velocity = Vec3::select(on, across, state.cargo_velocity);
+        let q = hanging.place.unit();
+        let across = hanging.velocity - q * q.dot(hanging.velocity);
+        hanging.place = Vec3::select(on, q * self.length, hanging.place);
+        hanging.velocity = Vec3::select(on, across, hanging.velocity);
+    }
+
+    /// Hangs straight down what has just been attached, and forgets what has been dropped.
+    #[inline(always)]
+    pub fn attach(&self, hanging: &Hanging<T>) -> Hanging<T> {
+        let new = T::zero().lt(self.mass) & hanging.place.norm_squared().eq(T::zero());
+        let gone = self.mass.eq(T::zero());
+        let place = Vec3::select(new, Vec3::up(-self.length), hanging.place);
+        Hanging {
+            place: Vec3::select(gone, Vec3::zero(), place),
+            velocity: Vec3::select(gone, Vec3::zero(), hanging.velocity),
+        }
     }
 }

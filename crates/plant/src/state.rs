@@ -17,10 +17,6 @@ record! {
         rate: Vec3<T, Body> [rad/s];
         /// Speed of each rotor.
         rotor_speed: [T; 4] [rad/s];
-        /// What hangs on a cable, from the centre of mass; see [`crate::sling`].
-        cargo: Vec3<T, World> [m];
-        /// Its velocity relative to the vehicle's.
-        cargo_velocity: Vec3<T, World> [m/s];
     }
 }
 
@@ -51,7 +47,6 @@ impl<T: Real> State<T> {
             attitude: Rotation::from_quaternion(q.w + w * h, q.x + x * h, q.y + y * h, q.z + z * h),
             rate: self.rate + d.rate * h,
             rotor_speed,
-            ..*self
         }
     }
 }

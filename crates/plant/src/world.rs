@@ -22,20 +22,64 @@ use stormpetrel_control::signals::Wrench;
 use crate::actuation::{Actuate as _, Actuation};
 use crate::aerodynamics::drag;
 use crate::dispatch::{Work, wide};
-use crate::dynamics::{Held, acceleration, angular_acceleration, quaternion_rate};
-use crate::sling::hang;
+use crate::dynamics::{
+    Held, Push, Reciprocals, acceleration, angular_acceleration, quaternion_rate,
+};
+use crate::sling::{Hanging, Sling, hang};
 use crate::state::{Derivative, State};
 use crate::vehicle::Vehicle;
 
 record! {
+    /// What stays constant over a control tick, prepared once.
+    pub struct Conditions {
+        /// Pushes, and reciprocal moments of inertia.
+        held: Held<T> [];
+        /// Reciprocal mass.
+        per_mass: T [1/kg];
+        /// Wind.
+        wind: Vec3<T, World> [m/s];
+        /// What hangs from the vehicle.
+        sling: Sling<T> [];
+        /// Mass without over mass with a payload, s.
+        share: T [1];
+        /// Centre of mass from the rotors' centre, payload included, r.
+        shift: Vec3<T, Body> [m];
+        structure {
+            /// Whether the centre of mass may lie off the rotors' centre.
+            laden: bool;
+            /// Whether the air acts on the body.
+            airy: bool;
+            /// Whether something hangs from it.
+            hangs: bool;
+        }
+    }
+}
+
+impl<T: Real> Conditions<T> {
+    /// For this vehicle and push, in air that does not act and with nothing on a cable.
+    pub fn new(per: &Reciprocals<T>, push: &Push<T>) -> Self {
+        let held = Held::new(per, push);
+        Self { held, per_mass: per.mass, share: T::one(), ..Self::default() }
+    }
+}
+
+record! {
+    /// The state of the vehicle and of what hangs from it.
+    pub struct Whole {
+        /// The vehicle.
+        body: State<T> [];
+        /// What hangs from it.
+        hanging: Hanging<T> [];
+    }
+}
+
+record! {
     /// Time derivative of the whole state.
     pub struct Slope {
-        /// Of the body.
+        /// Of the vehicle.
         body: Derivative<T> [];
-        /// Relative velocity of what hangs on a cable.
-        cargo: Vec3<T, World> [m/s];
-        /// Its relative acceleration.
-        cargo_velocity: Vec3<T, World> [m/s^2];
+        /// Of what hangs from it: relative velocity and acceleration in the places of place and velocity.
+        hanging: Hanging<T> [];
     }
 }
 
@@ -47,34 +91,35 @@ pub struct Scenery<'a, T> {
     /// Its rotors.
     pub actuation: &'a Actuation<T>,
     /// What stays constant over the tick.
-    pub held: &'a Held<T>,
+    pub conditions: &'a Conditions<T>,
 }
 
 impl<T: Real> Scenery<'_, T> {
     /// The time derivative of the state, (1) and (2).
     #[inline(always)]
-    pub fn slope(&self, state: &State<T>) -> Slope<T> {
-        let Self { vehicle, actuation, held } = *self;
-        let load = actuation.load(state, vehicle, held);
+    pub fn slope(&self, whole: &Whole<T>) -> Slope<T> {
+        let Self { vehicle, actuation, conditions } = *self;
+        let (state, held) = (&whole.body, &conditions.held);
+        let load = actuation.load(state, vehicle, conditions);
         let mut torque = load.torque + held.torque;
         let mut thrust = load.thrust_per_mass;
-        if held.laden {
-            thrust = thrust * held.share;
+        if conditions.laden {
+            thrust = thrust * conditions.share;
             let along = state.attitude.inverse() * (thrust * vehicle.mass);
-            torque -= held.shift.cross(along);
+            torque -= conditions.shift.cross(along);
         }
         let mut a = acceleration(thrust, held.push_per_mass, vehicle.gravity);
-        if held.airy {
-            let air = drag(state, vehicle, held.wind);
-            a += air.force * held.per_mass;
+        if conditions.airy {
+            let air = drag(state, vehicle, conditions.wind);
+            a += air.force * conditions.per_mass;
             torque += air.torque;
         }
-        let (mut cargo, mut cargo_velocity) = (Vec3::zero(), Vec3::zero());
-        if held.hangs {
+        let mut hanging = Hanging::default();
+        if conditions.hangs {
             let free = a + Vec3::up(vehicle.gravity);
-            let hung = hang(state, free, held.per_mass, &held.sling);
+            let hung = hang(&whole.hanging, free, conditions.per_mass, &conditions.sling);
             a += hung.pull; // (1)
-            (cargo, cargo_velocity) = (state.cargo_velocity, hung.acceleration);
+            hanging = Hanging { place: whole.hanging.velocity, velocity: hung.acceleration };
         }
         let body = Derivative {
             position: state.velocity,
@@ -82,15 +127,19 @@ impl<T: Real> Scenery<'_, T> {
             attitude: quaternion_rate(state),
             rate: angular_acceleration(state, vehicle, held, torque), // (2)
         };
-        Slope { body, cargo, cargo_velocity }
+        Slope { body, hanging }
     }
 
     /// One Runge-Kutta step of `h` seconds; the actuation has let them pass.
     #[inline(always)]
-    fn runge_kutta(&self, state: &State<T>, h: T) -> State<T> {
-        let [half_way, end] = self.actuation.rotor_speeds(state);
-        let ahead =
-            [(T::zero(), state.rotor_speed), (h.half(), half_way), (h.half(), half_way), (h, end)];
+    fn runge_kutta(&self, state: &Whole<T>, h: T) -> Whole<T> {
+        let [half_way, end] = self.actuation.rotor_speeds(&state.body);
+        let ahead = [
+            (T::zero(), state.body.rotor_speed),
+            (h.half(), half_way),
+            (h.half(), half_way),
+            (h, end),
+        ];
         let weights = [1.0, 2.0, 2.0, 1.0];
         let (mut last, mut sum) = (Slope::default(), Slope::default());
         // A loop, so that the world is compiled once and not four times.
@@ -100,9 +149,9 @@ impl<T: Real> Scenery<'_, T> {
             sum = Slope::zip([&sum, &last], &mut |[sum, k]| sum + k * weight);
         }
         let mut next = along(state, &sum, h * T::lit(1.0 / 6.0), end);
-        next.attitude = next.attitude.normalised();
-        if self.held.hangs {
-            self.held.sling.tighten(&mut next);
+        next.body.attitude = next.body.attitude.normalised();
+        if self.conditions.hangs {
+            self.conditions.sling.tighten(&mut next.hanging);
         }
         next
     }
@@ -110,32 +159,35 @@ impl<T: Real> Scenery<'_, T> {
 
 /// The state `h` seconds on along a constant slope, with these rotor speeds.
 #[inline(always)]
-fn along<T: Real>(state: &State<T>, slope: &Slope<T>, h: T, rotor_speed: [T; 4]) -> State<T> {
-    State {
-        cargo: state.cargo + slope.cargo * h,
-        cargo_velocity: state.cargo_velocity + slope.cargo_velocity * h,
-        ..state.along(&slope.body, h, rotor_speed)
+fn along<T: Real>(state: &Whole<T>, slope: &Slope<T>, h: T, rotor_speed: [T; 4]) -> Whole<T> {
+    let Hanging { place, velocity } = state.hanging;
+    Whole {
+        body: state.body.along(&slope.body, h, rotor_speed),
+        hanging: Hanging {
+            place: place + slope.hanging.place * h,
+            velocity: velocity + slope.hanging.velocity * h,
+        },
     }
 }
 
 /// Runge-Kutta steps through the whole world.
 struct Moving<'a, T> {
-    state: State<T>,
+    state: Whole<T>,
     h: T,
     steps: u32,
     vehicle: &'a Vehicle<T>,
     actuation: &'a mut Actuation<T>,
-    held: &'a Held<T>,
+    conditions: &'a Conditions<T>,
 }
 
 impl<T: Real> Work for Moving<'_, T> {
-    type Output = State<T>;
+    type Output = Whole<T>;
     #[inline(always)]
-    fn run(self) -> State<T> {
-        let Self { mut state, h, steps, vehicle, actuation, held } = self;
+    fn run(self) -> Whole<T> {
+        let Self { mut state, h, steps, vehicle, actuation, conditions } = self;
         for _ in 0..steps {
             actuation.pass(h);
-            let scenery = Scenery { vehicle, actuation, held };
+            let scenery = Scenery { vehicle, actuation, conditions };
             state = scenery.runge_kutta(&state, h);
         }
         state
@@ -145,34 +197,30 @@ impl<T: Real> Work for Moving<'_, T> {
 /// The state after so many Runge-Kutta steps of `h` seconds.
 #[inline(never)]
 pub fn advance<T: Real>(
-    state: &State<T>,
+    state: &Whole<T>,
     h: T,
     steps: u32,
     vehicle: &Vehicle<T>,
     actuation: &mut Actuation<T>,
-    held: &Held<T>,
-) -> State<T> {
-    wide::<T, _>(Moving { state: *state, h, steps, vehicle, actuation, held })
+    conditions: &Conditions<T>,
+) -> Whole<T> {
+    wide::<T, _>(Moving { state: *state, h, steps, vehicle, actuation, conditions })
 }
 
 record! {
     /// What acts on the vehicle at one moment.
     pub struct Seen {
-        /// Acceleration.
-        acceleration: Vec3<T, World> [m/s^2];
-        /// Angular acceleration and the rest of the derivative.
+        /// Derivative of the state.
         slope: Slope<T> [];
         /// Thrust and torque of the rotors.
         rotors: Wrench<T> [];
-        /// Force of the air on the body.
-        air_force: Vec3<T, World> [N];
-        /// Torque of the air on the body.
-        air_torque: Vec3<T, Body> [N m];
+        /// The air on the body.
+        air: Push<T> [];
     }
 }
 
 struct Looking<'a, T> {
-    state: State<T>,
+    state: Whole<T>,
     scenery: Scenery<'a, T>,
 }
 
@@ -181,26 +229,22 @@ impl<T: Real> Work for Looking<'_, T> {
     #[inline(always)]
     fn run(self) -> Seen<T> {
         let Self { state, scenery } = self;
-        let Scenery { vehicle, actuation, held } = scenery;
-        let slope = scenery.slope(&state);
-        let load = actuation.load(&state, vehicle, held);
-        let along = load.thrust_per_mass.dot(state.attitude.z_axis());
-        let mut seen = Seen {
-            acceleration: slope.body.velocity,
-            slope,
-            rotors: Wrench { thrust: along * vehicle.mass * held.share, torque: load.torque },
-            ..Seen::default()
-        };
-        if held.airy {
-            let air = drag(&state, vehicle, held.wind);
-            (seen.air_force, seen.air_torque) = (air.force, air.torque);
+        let Scenery { vehicle, actuation, conditions } = scenery;
+        let (slope, body) = (scenery.slope(&state), &state.body);
+        let load = actuation.load(body, vehicle, conditions);
+        let along = load.thrust_per_mass.dot(body.attitude.z_axis());
+        let thrust = along * vehicle.mass * conditions.share;
+        let rotors = Wrench { thrust, torque: load.torque };
+        let mut air = Push::default();
+        if conditions.airy {
+            air = drag(body, vehicle, conditions.wind);
         }
-        seen
+        Seen { slope, rotors, air }
     }
 }
 
 /// What acts on the vehicle now.
 #[inline(never)]
-pub fn look<T: Real>(state: &State<T>, scenery: Scenery<'_, T>) -> Seen<T> {
+pub fn look<T: Real>(state: &Whole<T>, scenery: Scenery<'_, T>) -> Seen<T> {
     wide::<T, _>(Looking { state: *state, scenery })
 }

@@ -36,8 +36,6 @@ fn mirrored(s: &State<f64>) -> State<f64> {
         attitude: Rotation::from_quaternion(q.w, -q.x, q.y, -q.z),
         rate: mirror_axial(s.rate),
         rotor_speed: [front, left, rear, right],
-        cargo: mirror(s.cargo),
-        cargo_velocity: mirror(s.cargo_velocity),
     }
 }
 
@@ -79,7 +77,6 @@ fn start(flight: &mut Flight<f64>) -> State<f64> {
         attitude: Rotation::from_euler(Euler { roll: 0.2, pitch: -0.1, yaw: 0.3 }),
         rate: body(0.3, -0.2, 0.5),
         rotor_speed: [1400.0, 1450.0, 1500.0, 1420.0],
-        ..State::default()
     };
     flight.start(state);
     state
@@ -227,7 +224,6 @@ fn turned_apart(
         attitude: Rotation::from_euler(Euler { roll: 0.1, pitch: -0.2, yaw: 0.9 }),
         rate: body(0.2, 0.1, -0.3),
         rotor_speed: [1458.0; 4],
-        ..State::default()
     };
     flight.start(state);
     flight.tick = ticks as u64;

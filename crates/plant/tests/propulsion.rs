@@ -12,10 +12,10 @@ use stormpetrel_control::stack::Command;
 use stormpetrel_plant::actuation::propulsion::{self, Options, Supply};
 use stormpetrel_plant::actuation::{Actuate, Actuation, ActuationSettings};
 use stormpetrel_plant::disturbance::{DisturbanceSettings, RotorFaults, rotor_lost};
-use stormpetrel_plant::dynamics::{Held, Push, Reciprocals};
+use stormpetrel_plant::dynamics::{Push, Reciprocals};
 use stormpetrel_plant::state::State;
 use stormpetrel_plant::vehicle::{Arms, Layout, Vehicle};
-use stormpetrel_plant::world as whole;
+use stormpetrel_plant::world::{self as whole, Conditions, Whole};
 
 fn vehicle() -> Vehicle<f64> {
     Scene::default().vehicle
@@ -33,8 +33,20 @@ fn plain(vehicle: &Vehicle<f64>) -> Actuation<f64> {
     built(vehicle, Default::default(), Options::default())
 }
 
-fn calm(vehicle: &Vehicle<f64>) -> Held<f64> {
-    Held::new(&Reciprocals::new(vehicle), &Push::default())
+fn calm(vehicle: &Vehicle<f64>) -> Conditions<f64> {
+    Conditions::new(&Reciprocals::new(vehicle), &Push::default())
+}
+
+/// The state `h` seconds on.
+fn moved(
+    body: State<f64>,
+    h: f64,
+    vehicle: &Vehicle<f64>,
+    actuation: &mut Actuation<f64>,
+    conditions: &Conditions<f64>,
+) -> State<f64> {
+    let whole = Whole { body, ..Whole::default() };
+    whole::advance(&whole, h, 1, vehicle, actuation, conditions).body
 }
 
 fn asking(thrust: f64) -> Command<f64> {
@@ -55,7 +67,7 @@ fn a_rotor_rises_and_falls_with_its_own_time_constant() {
         for tick in 1..=100 {
             actuation.command(&asking(thrust), &vehicle);
             actuation.suffer(&RotorFaults::none(), &state, 1e-3);
-            state = whole::advance(&state, 1e-3, 1, &vehicle, &mut actuation, &calm(&vehicle));
+            state = moved(state, 1e-3, &vehicle, &mut actuation, &calm(&vehicle));
             let want = to + (from - to) * (-f64::from(tick) * 1e-3 / lag).exp();
             assert!((state.rotor_speed[2] / want - 1.0).abs() < 1e-12, "tick {tick}");
         }
@@ -132,7 +144,7 @@ fn spinning_rotors_precess() {
     }
     let mut state = State { rate: body(0.4, 0.0, 0.0), ..at_speed(1000.0) };
     for _ in 0..1000 {
-        state = whole::advance(&state, 1e-4, 1, &vehicle, &mut actuation, &calm(&vehicle));
+        state = moved(state, 1e-4, &vehicle, &mut actuation, &calm(&vehicle));
     }
     let angle: f64 = 4.0 * 2e-5 * 1000.0 / 3e-3 * 0.1;
     let want = body(angle.cos(), angle.sin(), 0.0) * 0.4;
@@ -157,7 +169,7 @@ fn a_rotor_that_speeds_up_turns_the_body_the_other_way() {
         rotors.rising = [1.0, 0.0, 1.0, 0.0];
     }
     for _ in 0..200 {
-        state = whole::advance(&state, 1e-3, 1, &vehicle, &mut actuation, &calm(&vehicle));
+        state = moved(state, 1e-3, &vehicle, &mut actuation, &calm(&vehicle));
     }
     let gained = 2e-5 * 2.0 * (state.rotor_speed[0] - 1000.0);
     assert!((state.rate.z * 2.6e-3 / -gained - 1.0).abs() < 1e-6, "{:?}", state.rate);
@@ -253,7 +265,7 @@ fn a_lost_rotor_gives_nothing_and_runs_down() {
         let want = hover * (-f64::from(tick) * 1e-3 / 0.02).exp();
         assert!((flight.state.rotor_speed[2] / want - 1.0).abs() < 1e-12);
     }
-    let load = flight.actuation.load(&flight.state, &flight.vehicle, &flight.held);
+    let load = flight.actuation.load(&flight.state, &flight.vehicle, &flight.conditions);
     let [a, b, _, d] = flight.state.rotor_speed.map(|w| 7.2e-7 * w * w);
     let thrust = load.thrust_per_mass.norm() * flight.vehicle.mass;
     assert!((thrust / (a + b + d) - 1.0).abs() < 1e-12);

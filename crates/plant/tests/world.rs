@@ -11,20 +11,32 @@ use stormpetrel_plant::actuation::{Actuation, ActuationSettings};
 use stormpetrel_plant::disturbance::{
     DisturbanceSettings, Site, SourceSettings, Window, payload, slung_mass,
 };
-use stormpetrel_plant::dynamics::{Held, Push, Reciprocals};
+use stormpetrel_plant::dynamics::{Push, Reciprocals};
 use stormpetrel_plant::flight::Flight;
-use stormpetrel_plant::sling::Sling;
+use stormpetrel_plant::sling::{Hanging, Sling};
 use stormpetrel_plant::state::State;
 use stormpetrel_plant::vehicle::Vehicle;
-use stormpetrel_plant::world as whole;
+use stormpetrel_plant::world::{self as whole, Conditions, Scenery, Whole};
 
 /// A body without rotors: the ideal wrench commands nothing.
 fn coasting(vehicle: &Vehicle<f64>) -> Actuation<f64> {
     named::<ActuationSettings>("wrench").build(vehicle)
 }
 
-fn airy(vehicle: &Vehicle<f64>) -> Held<f64> {
-    Held { airy: true, ..Held::new(&Reciprocals::new(vehicle), &Push::default()) }
+/// The state `h` seconds on.
+fn moved(
+    body: State<f64>,
+    h: f64,
+    vehicle: &Vehicle<f64>,
+    actuation: &mut Actuation<f64>,
+    conditions: &Conditions<f64>,
+) -> State<f64> {
+    let whole = Whole { body, ..Whole::default() };
+    whole::advance(&whole, h, 1, vehicle, actuation, conditions).body
+}
+
+fn airy(vehicle: &Vehicle<f64>) -> Conditions<f64> {
+    Conditions { airy: true, ..Conditions::new(&Reciprocals::new(vehicle), &Push::default()) }
 }
 
 #[test]
@@ -39,7 +51,7 @@ fn a_fall_through_air_follows_its_closed_form() {
     let (mut actuation, held) = (coasting(&vehicle), airy(&vehicle));
     let mut state = State::default();
     for tick in 1..=30_000 {
-        state = whole::advance(&state, 1e-3, 1, &vehicle, &mut actuation, &held);
+        state = moved(state, 1e-3, &vehicle, &mut actuation, &held);
         let (v, z) = (-state.velocity.z, -state.position.z);
         if tick == 10_000 {
             assert!(
@@ -57,11 +69,11 @@ fn a_fall_through_air_follows_its_closed_form() {
 #[test]
 fn linear_drag_brings_the_body_to_the_speed_of_the_wind() {
     let vehicle = Vehicle { gravity: 0.0, rotor_drag: body(0.3, 0.5, 0.1), ..Vehicle::default() };
-    let held = Held { wind: world(4.0, -2.0, 1.0), ..airy(&vehicle) };
+    let held = Conditions { wind: world(4.0, -2.0, 1.0), ..airy(&vehicle) };
     let mut actuation = coasting(&vehicle);
     let mut state = State::default();
     for _ in 0..1000 {
-        state = whole::advance(&state, 1e-3, 1, &vehicle, &mut actuation, &held);
+        state = moved(state, 1e-3, &vehicle, &mut actuation, &held);
     }
     // Level and not turning: each axis is a first-order lag of its own.
     let reached = |d: f64| 1.0 - (-d / 0.625f64).exp();
@@ -77,10 +89,7 @@ fn rate_drag_has_its_closed_forms() {
     let spin = State { rate: body(0.0, 0.0, 20.0), ..State::default() };
     let fly = |vehicle: &Vehicle<f64>, start: State<f64>| {
         let (mut actuation, held) = (coasting(vehicle), airy(vehicle));
-        (0..2000)
-            .fold(start, |state, _| whole::advance(&state, 1e-3, 1, vehicle, &mut actuation, &held))
-            .rate
-            .z
+        (0..2000).fold(start, |state, _| moved(state, 1e-3, vehicle, &mut actuation, &held)).rate.z
     };
     let linear = Vehicle { rate_drag: Vec3::splat(2e-3), ..plain };
     assert!((fly(&linear, spin) - 20.0 * (-2e-3 * 2.0 / inertia).exp()).abs() < 1e-11);
@@ -125,7 +134,7 @@ fn a_tumbling_brick_with_rate_damping_stays_inside_the_span_of_the_published_sim
         let damping = density(geopotential) * s / 4.0;
         vehicle.rate_drag_airspeed = body(b * b, c * c, b * b) * damping;
         let held = airy(&vehicle);
-        state = whole::advance(&state, 1e-3, 1, &vehicle, &mut actuation, &held);
+        state = moved(state, 1e-3, &vehicle, &mut actuation, &held);
         for (time, want, span) in &checks {
             if (tick as f64 * 1e-3 - time).abs() < 1e-6 {
                 let got = state.rate * (1.0 / DEGREE);
@@ -152,7 +161,7 @@ fn energy_changes_by_the_work_of_thrust_and_air() {
     if let Actuation::Rotors(rotors) = &mut actuation {
         rotors.commanded = [1400.0, 1460.0, 1420.0, 1450.0];
     }
-    let held = Held { wind: world(3.0, -1.0, 0.5), ..airy(&vehicle) };
+    let held = Conditions { wind: world(3.0, -1.0, 0.5), ..airy(&vehicle) };
     let mut state = State {
         rate: body(0.5, -0.3, 0.2),
         velocity: world(2.0, 1.0, -0.5),
@@ -166,7 +175,8 @@ fn energy_changes_by_the_work_of_thrust_and_air() {
             + vehicle.mass * vehicle.gravity * s.position.z
     };
     let power = |actuation: &Actuation<f64>, s: &State<f64>| {
-        let slope = whole::Scenery { vehicle: &vehicle, actuation, held: &held }.slope(s).body;
+        let scenery = Scenery { vehicle: &vehicle, actuation, conditions: &held };
+        let slope = scenery.slope(&Whole { body: *s, ..Whole::default() }).body;
         // Force and torque from the motion itself, weight taken out.
         let force = (slope.velocity + Vec3::up(vehicle.gravity)) * vehicle.mass;
         let torque =
@@ -178,9 +188,9 @@ fn energy_changes_by_the_work_of_thrust_and_air() {
     for _ in 0..1000 {
         // Simpson's rule over two steps.
         let a = power(&actuation, &state);
-        let middle = whole::advance(&state, h, 1, &vehicle, &mut actuation, &held);
+        let middle = moved(state, h, &vehicle, &mut actuation, &held);
         let b = power(&actuation, &middle);
-        state = whole::advance(&middle, h, 1, &vehicle, &mut actuation, &held);
+        state = moved(middle, h, &vehicle, &mut actuation, &held);
         work += h / 3.0 * (a + 4.0 * b + power(&actuation, &state));
         most = most.max(energy(&state).abs());
     }
@@ -204,18 +214,22 @@ fn a_slung_mass_under_a_heavy_vehicle_swings_like_a_pendulum() {
     let (length, angle) = (1.7f64, 1.2f64);
     let lift = Push { force: Vec3::up(vehicle.mass * vehicle.gravity), ..Push::default() };
     let sling = Sling { mass: 0.2, length, damping: 0.0 };
-    let held = Held { hangs: true, sling, ..Held::new(&Reciprocals::new(&vehicle), &lift) };
+    let held =
+        Conditions { hangs: true, sling, ..Conditions::new(&Reciprocals::new(&vehicle), &lift) };
     let mut actuation = coasting(&vehicle);
     let (sin, cos) = angle.sin_cos();
-    let mut state = State { cargo: world(sin, 0.0, -cos) * length, ..State::default() };
-    let (mut crossings, mut last, h) = (Vec::new(), state.cargo.x, 1e-3);
+    let mut state = Whole {
+        hanging: Hanging { place: world(sin, 0.0, -cos) * length, ..Hanging::default() },
+        ..Whole::default()
+    };
+    let (mut crossings, mut last, h) = (Vec::new(), state.hanging.place.x, 1e-3);
     for tick in 1..20_000 {
         state = whole::advance(&state, h, 1, &vehicle, &mut actuation, &held);
-        if state.cargo.x * last < 0.0 {
-            let back = state.cargo.x / (state.cargo.x - last);
+        if state.hanging.place.x * last < 0.0 {
+            let back = state.hanging.place.x / (state.hanging.place.x - last);
             crossings.push((tick as f64 - back) * h);
         }
-        last = state.cargo.x;
+        last = state.hanging.place.x;
     }
     let period = 2.0 * (crossings[6] - crossings[0]) / 6.0;
     let want = 4.0 * (length / vehicle.gravity).sqrt() * elliptic_k((angle / 2.0).sin().powi(2));
@@ -227,22 +241,25 @@ fn a_cable_only_exchanges_momentum_and_keeps_energy() {
     // Vehicle and load in free fall, without drag: the common centre falls like a stone.
     let vehicle = Vehicle::default();
     let sling = Sling { mass: 0.3, length: 1.0, damping: 0.0 };
-    let held =
-        Held { hangs: true, sling, ..Held::new(&Reciprocals::new(&vehicle), &Push::default()) };
-    let mut actuation = coasting(&vehicle);
-    let mut state = State {
-        cargo: world(0.6, 0.0, -0.8),
-        cargo_velocity: world(0.8, 2.0, 0.6),
-        ..State::default()
+    let held = Conditions {
+        hangs: true,
+        sling,
+        ..Conditions::new(&Reciprocals::new(&vehicle), &Push::default())
     };
-    let centre = |s: &State<f64>| s.position + s.cargo * (0.3 / 0.925);
-    let energy = |s: &State<f64>| {
-        let cargo = s.velocity + s.cargo_velocity;
-        let height = s.position.z * vehicle.mass + (s.position.z + s.cargo.z) * 0.3;
-        0.5 * (vehicle.mass * s.velocity.norm_squared() + 0.3 * cargo.norm_squared())
+    let mut actuation = coasting(&vehicle);
+    let mut state = Whole {
+        hanging: Hanging { place: world(0.6, 0.0, -0.8), velocity: world(0.8, 2.0, 0.6) },
+        ..Whole::default()
+    };
+    let centre = |s: &Whole<f64>| s.body.position + s.hanging.place * (0.3 / 0.925);
+    let energy = |s: &Whole<f64>| {
+        let Whole { body, hanging } = s;
+        let cargo = body.velocity + hanging.velocity;
+        let height = body.position.z * vehicle.mass + (body.position.z + hanging.place.z) * 0.3;
+        0.5 * (vehicle.mass * body.velocity.norm_squared() + 0.3 * cargo.norm_squared())
             + vehicle.gravity * height
     };
-    let drift = (state.cargo_velocity * (0.3 / 0.925), centre(&state), energy(&state));
+    let drift = (state.hanging.velocity * (0.3 / 0.925), centre(&state), energy(&state));
     for _ in 0..1000 {
         state = whole::advance(&state, 1e-3, 1, &vehicle, &mut actuation, &held);
     }
@@ -300,9 +317,12 @@ fn a_payload_beside_the_centre_tips_the_vehicle_and_adds_its_inertia() {
     assert!((inertia.y - 2.4e-3 - reduced * x * x).abs() < 1e-15);
     assert!((inertia.z - 2.6e-3 - reduced * x * x).abs() < 1e-15);
     // Thrust m g through the rotors' centre, which lies behind the common centre by x mp/m'.
-    let scenery =
-        whole::Scenery { vehicle: flight.body(), actuation: &flight.actuation, held: &flight.held };
-    let slope = scenery.slope(&flight.state).body;
+    let scenery = Scenery {
+        vehicle: flight.body(),
+        actuation: &flight.actuation,
+        conditions: &flight.conditions,
+    };
+    let slope = scenery.slope(&Whole { body: flight.state, hanging: flight.hanging }).body;
     let want = 0.625 * 9.8 * x * mass / (0.625 + mass) / inertia.y;
     assert!((slope.rate.y / want - 1.0).abs() < 1e-9, "{} {want}", slope.rate.y);
 }
@@ -346,7 +366,7 @@ fn nothing_in_the_world_costs_the_integrator_its_order() {
         rotors.ground = -0.3;
     }
     let push = Push { force: world(0.3, -0.2, 0.1), torque: body(0.01, -0.02, 0.005) };
-    let held = Held {
+    let held = Conditions {
         airy: true,
         hangs: true,
         laden: true,
@@ -354,15 +374,16 @@ fn nothing_in_the_world_costs_the_integrator_its_order() {
         sling: Sling { mass: 0.1, length: 0.5, damping: 0.05 },
         share: 0.9,
         shift: body(0.005, -0.003, 0.01),
-        ..Held::new(&Reciprocals::new(&vehicle), &push)
+        ..Conditions::new(&Reciprocals::new(&vehicle), &push)
     };
-    let start = State {
-        velocity: world(1.0, 2.0, -0.5),
-        rate: body(2.0, -3.0, 1.0),
-        rotor_speed: [1450.0, 1500.0, 1480.0, 1440.0],
-        cargo: world(0.3, 0.0, -0.4),
-        cargo_velocity: world(0.4, 0.5, 0.3),
-        ..State::default()
+    let start = Whole {
+        body: State {
+            velocity: world(1.0, 2.0, -0.5),
+            rate: body(2.0, -3.0, 1.0),
+            rotor_speed: [1450.0, 1500.0, 1480.0, 1440.0],
+            ..State::default()
+        },
+        hanging: Hanging { place: world(0.3, 0.0, -0.4), velocity: world(0.4, 0.5, 0.3) },
     };
     let fly = |steps: u32| {
         let (mut actuation, h) = (base, 0.1 / f64::from(steps));
@@ -373,7 +394,7 @@ fn nothing_in_the_world_costs_the_integrator_its_order() {
     let error = |steps: u32| {
         let state = fly(steps);
         let mut sum = 0.0;
-        <State<f64> as Record<f64>>::zip([&state, &exact], &mut |[a, b]: [f64; 2]| {
+        <Whole<f64> as Record<f64>>::zip([&state, &exact], &mut |[a, b]: [f64; 2]| {
             sum += (a - b) * (a - b);
             0.0
         });

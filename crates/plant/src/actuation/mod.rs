@@ -15,6 +15,7 @@ use crate::disturbance::RotorFaults;
 use crate::dynamics::{Held, runge_kutta};
 use crate::state::State;
 use crate::vehicle::Vehicle;
+use crate::world::Conditions;
 
 record! {
     /// What the rotors do to the body.
@@ -42,7 +43,7 @@ pub trait Actuate<T: Real>: Plain<T> {
     fn suffer(&mut self, _faults: &RotorFaults<T>, _state: &State<T>, _dt: T) {}
     /// What acts on the body in this state.
     #[inline(always)]
-    fn load(&self, state: &State<T>, vehicle: &Vehicle<T>, _held: &Held<T>) -> Load<T> {
+    fn load(&self, state: &State<T>, vehicle: &Vehicle<T>, _: &Conditions<T>) -> Load<T> {
         Load { thrust_per_mass: self.thrust_per_mass(state, vehicle), torque: self.torque(state) }
     }
     /// The rotors' thrust per mass, in still air, m/s^2.
@@ -115,8 +116,8 @@ macro_rules! dispatch_actuate {
                 match self { $( Self::$variant(x) => x.suffer(faults, state, dt), )+ }
             }
             #[inline(always)]
-            fn load(&self, state: &State<T>, vehicle: &Vehicle<T>, held: &Held<T>) -> Load<T> {
-                match self { $( Self::$variant(x) => x.load(state, vehicle, held), )+ }
+            fn load(&self, state: &State<T>, vehicle: &Vehicle<T>, conditions: &Conditions<T>) -> Load<T> {
+                match self { $( Self::$variant(x) => x.load(state, vehicle, conditions), )+ }
             }
             fn reset(&mut self) {
                 match self { $( Self::$variant(x) => x.reset(), )+ }

@@ -37,9 +37,9 @@ use super::curve::{OpenCircuit, RotorCurve, look_up_lanes};
 use super::{Actuate, Load};
 use crate::aerodynamics::through_air;
 use crate::disturbance::RotorFaults;
-use crate::dynamics::Held;
 use crate::state::State;
 use crate::vehicle::{Mount, Vehicle};
+use crate::world::Conditions;
 
 record! {
     /// Numbers of the propulsion beside the vehicle's.
@@ -252,9 +252,9 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
         }
     }
     #[inline(always)]
-    fn load(&self, state: &State<T>, vehicle: &Vehicle<T>, held: &Held<T>) -> Load<T> {
+    fn load(&self, state: &State<T>, vehicle: &Vehicle<T>, around: &Conditions<T>) -> Load<T> {
         let omega = state.rate;
-        let through = through_air(state, held.wind);
+        let through = through_air(state, around.wind);
         let z = state.attitude.z_axis();
         let up = Vec3::up(T::one());
         let [rise, fall] = each(self.lags, |lag| T::one() / lag);
@@ -263,7 +263,7 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
             let Mount { place, spin } = self.mounts[i];
             let speed = state.rotor_speed[i];
             let [still, drag] = self.rotor(speed);
-            let flow = through + omega.cross(place - held.shift);
+            let flow = through + omega.cross(place - around.shift);
             let height = state.position.z + (state.attitude * place).z - self.ground;
             let gain = self.health[i] * self.cushion(height, vehicle.rotor_radius);
             let lift = gain * (still - vehicle.inflow_loss * speed * flow.z); // (3)

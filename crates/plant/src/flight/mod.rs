@@ -13,10 +13,11 @@ use crate::actuation::{Actuate, Actuation};
 use crate::disturbance::{MOST, Source};
 use crate::dynamics::{Held, Push, Reciprocals, acceleration};
 use crate::reference::{Refer, Reference};
+use crate::sling::Hanging;
 use crate::state::State;
 use crate::timing::Timing;
 use crate::vehicle::Vehicle;
-use crate::world;
+use crate::world::{self, Conditions, Whole};
 
 pub use surroundings::{Air, Cares, Surroundings};
 
@@ -147,8 +148,10 @@ record! {
         per: Reciprocals<T> [];
         /// The vehicle with its payload.
         laden: Vehicle<T> [];
-        /// What stays constant over the tick.
-        held: Held<T> [];
+        /// What hangs on a cable.
+        hanging: Hanging<T> [];
+        /// What stays constant over the tick, where more than pushes disturbs.
+        conditions: Conditions<T> [];
         /// Thrust that the laws expect over the true one.
         belief: T [1];
         /// True mass over the mass that the laws believe.
@@ -184,6 +187,7 @@ impl Flight<f64> {
         self.state = state;
         self.cares = self.cares();
         self.laden = self.vehicle;
+        self.hanging = Hanging::default();
         self.per = Reciprocals::new(&self.vehicle);
         self.belief = self.actuation.belief();
         self.mass_ratio = self.vehicle.mass / self.model.mass;
@@ -229,7 +233,9 @@ impl<T: Real> Flight<T> {
         let time = self.time();
         let reference = self.reference.at(time);
         let around = self.surroundings();
-        self.held = self.hold(&around);
+        if self.cares.any() {
+            self.prepare(around);
+        }
         let estimate = self.stack.estimate() * self.model.mass;
         let command = self.command(&reference);
         self.unallocated = self.actuation.command(&command, &self.vehicle);
@@ -239,7 +245,11 @@ impl<T: Real> Flight<T> {
         self.thrust_per_mass = self.actuation.thrust_per_mass(&self.state, &self.vehicle);
         let mut tick = self.tick_of(&reference, &command, &around, estimate);
         if self.cares.any() {
-            self.look_around(&mut tick);
+            let seen = self.look();
+            tick.applied = seen.rotors;
+            (tick.air.force, tick.air.torque) = (seen.air.force, seen.air.torque);
+            tick.disturbance.lumped = self.unexplained(seen.slope.body.velocity);
+            tick.cargo = self.hanging.place;
         } else {
             tick.disturbance.lumped = self.lumped(&around.push);
         }
@@ -255,7 +265,7 @@ impl<T: Real> Flight<T> {
         around: &Surroundings<T>,
         estimate: Vec3<T, World>,
     ) -> Tick<T> {
-        let State { position, velocity, attitude, rate, rotor_speed, cargo, .. } = self.state;
+        let State { position, velocity, attitude, rate, rotor_speed } = self.state;
         Tick {
             time: self.time(),
             position,
@@ -272,7 +282,7 @@ impl<T: Real> Flight<T> {
                 lumped: Vec3::zero(),
             },
             air: Air { wind: around.wind, ..Air::default() },
-            cargo,
+            cargo: Vec3::zero(),
             estimate: Estimated { force: estimate },
             saturation: self.actuation.saturation(),
             flags: self.stack.flags(),
@@ -286,19 +296,19 @@ impl<T: Real> Flight<T> {
         let before = if self.timing.late { Some(self.stack) } else { None };
         let mut command = self.stack.update(&measurement, reference, dt);
         if let Some(before) = before {
-            self.delay(&before, &mut command);
+            command = self.delay(before, command);
         }
         command
     }
 
     /// What reaches the rotors now; where the tick is dropped, the laws have not run.
     #[inline(never)]
-    fn delay(&mut self, before: &Stack<T>, command: &mut Command<T>) {
+    fn delay(&mut self, before: Stack<T>, command: Command<T>) -> Command<T> {
         let tick = self.ticks();
         let dropped = self.timing.dropped(tick);
-        self.stack = blend(dropped, before, &self.stack);
-        self.decided = blend(dropped, &self.decided, command);
-        *command = self.timing.pass(&self.decided, tick, self.tick, self.control_step);
+        self.stack = blend(dropped, &before, &self.stack);
+        self.decided = blend(dropped, &self.decided, &command);
+        self.timing.pass(&self.decided, tick, self.tick, self.control_step)
     }
 
     /// m_law (a + g_law e_z) - T_law R e_z from the true acceleration, N.
@@ -341,11 +351,17 @@ impl<T: Real> Flight<T> {
         let h = dt * T::lit(1.0 / f64::from(self.substeps));
         let state = if self.cares.any() {
             let vehicle = if self.cares.laden { &self.laden } else { &self.vehicle };
-            world::advance(&self.state, h, self.substeps, vehicle, &mut self.actuation, &self.held)
+            let whole = Whole { body: self.state, hanging: self.hanging };
+            let (conditions, steps) = (&self.conditions, self.substeps);
+            let whole = world::advance(&whole, h, steps, vehicle, &mut self.actuation, conditions);
+            self.hanging = whole.hanging;
+            whole.body
         } else {
+            let push = Push { force: tick.disturbance.force, torque: tick.disturbance.torque };
+            let held = Held::new(&self.per, &push);
             let mut state = self.state;
             for _ in 0..self.substeps {
-                state = self.actuation.step(&state, h, &self.vehicle, &self.held);
+                state = self.actuation.step(&state, h, &self.vehicle, &held);
             }
             state
         };

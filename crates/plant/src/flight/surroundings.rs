@@ -4,16 +4,15 @@ use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
 
-use super::{Flight, Tick};
+use super::Flight;
 use crate::actuation::Actuation;
 use crate::aerodynamics::drag;
 use crate::dispatch::{Work, wide};
 use crate::disturbance::{Cargo, Disturbance, MOST, Reach, RotorFaults, Scene, Source};
-use crate::dynamics::{Held, Push, Reciprocals};
-use crate::sling::Sling;
-use crate::state::State;
+use crate::dynamics::{Push, Reciprocals};
+use crate::sling::{Hanging, Sling};
 use crate::vehicle::Vehicle;
-use crate::world::{Scenery, Seen, look};
+use crate::world::{Conditions, Scenery, Seen, Whole, look};
 
 record! {
     /// All disturbances of a tick, summed by what they touch.
@@ -107,32 +106,24 @@ impl<T: Real> Flight<T> {
             }
         }
         if self.cares.more {
-            survey(&mut self.disturbance, &scene, &mut all);
+            all = survey(&mut self.disturbance, scene, all);
         }
         all
     }
 
-    /// What stays constant over the tick; the vehicle with its load goes to `self.laden`.
-    #[inline(always)]
-    pub(super) fn hold(&mut self, around: &Surroundings<T>) -> Held<T> {
-        if !self.cares.any() {
-            return Held { wind: around.wind, ..Held::new(&self.per, &around.push) };
-        }
-        self.hold_more(around)
-    }
-
+    /// Prepares what stays constant over the tick, and the vehicle with its load.
     #[inline(never)]
-    fn hold_more(&mut self, around: &Surroundings<T>) -> Held<T> {
+    pub(super) fn prepare(&mut self, around: Surroundings<T>) {
         let Cargo { mass, place } = around.cargo;
         let (mut per, mut share, mut shift) = (self.per, T::one(), self.vehicle.center_of_mass);
         if self.cares.laden {
             let whole = self.vehicle.mass + mass;
             let reduced = self.vehicle.mass * mass / whole;
             let square = place.norm_squared();
-            let around = place.map(|r| square - r.sq());
+            let parallel = place.map(|r| square - r.sq());
             self.laden = Vehicle {
                 mass: whole,
-                inertia: self.vehicle.inertia + around * reduced,
+                inertia: self.vehicle.inertia + parallel * reduced,
                 ..self.vehicle
             };
             per = Reciprocals::new(&self.laden);
@@ -140,9 +131,9 @@ impl<T: Real> Flight<T> {
             shift += place * (mass * per.mass);
         }
         if self.cares.sling {
-            self.attach(&around.sling);
+            self.hanging = around.sling.attach(&self.hanging);
         }
-        Held {
+        self.conditions = Conditions {
             wind: around.wind,
             sling: around.sling,
             share,
@@ -150,19 +141,8 @@ impl<T: Real> Flight<T> {
             airy: self.cares.air,
             hangs: self.cares.sling,
             laden: self.cares.laden,
-            ..Held::new(&per, &around.push)
-        }
-    }
-
-    /// Lets a cable that has just been attached hang straight down.
-    #[inline(always)]
-    fn attach(&mut self, sling: &Sling<T>) {
-        let new = T::zero().lt(sling.mass) & self.state.cargo.norm_squared().eq(T::zero());
-        let gone = sling.mass.eq(T::zero());
-        let State { cargo, cargo_velocity, .. } = self.state;
-        let cargo = Vec3::select(new, Vec3::up(-sling.length), cargo);
-        self.state.cargo = Vec3::select(gone, Vec3::zero(), cargo);
-        self.state.cargo_velocity = Vec3::select(gone, Vec3::zero(), cargo_velocity);
+            ..Conditions::new(&per, &around.push)
+        };
     }
 
     /// The vehicle as it is now, its load included.
@@ -172,26 +152,23 @@ impl<T: Real> Flight<T> {
     }
 
     /// What acts on the vehicle now.
-    fn look(&self) -> Seen<T> {
-        let scenery =
-            Scenery { vehicle: self.body(), actuation: &self.actuation, held: &self.held };
-        look(&self.state, scenery)
+    pub(super) fn look(&self) -> Seen<T> {
+        let (vehicle, actuation) = (self.body(), &self.actuation);
+        let whole = Whole { body: self.state, hanging: self.hanging };
+        look(&whole, Scenery { vehicle, actuation, conditions: &self.conditions })
     }
 
     /// True acceleration, m/s^2.
     pub fn acceleration(&self) -> Vec3<T, World> {
-        self.look().acceleration
+        self.look().slope.body.velocity
     }
 
-    /// Writes down what only the whole world shows.
+    /// What of this acceleration the law's model does not explain, N.
     #[inline(never)]
-    pub(super) fn look_around(&self, tick: &mut Tick<T>) {
-        let seen = self.look();
-        tick.applied = seen.rotors;
-        (tick.air.force, tick.air.torque) = (seen.air_force, seen.air_torque);
-        let a = seen.acceleration + Vec3::up(self.model.gravity);
+    pub(super) fn unexplained(&self, acceleration: Vec3<T, World>) -> Vec3<T, World> {
+        let a = acceleration + Vec3::up(self.model.gravity);
         let expected = self.thrust_per_mass * (self.vehicle.mass * self.belief);
-        tick.disturbance.lumped = a * self.model.mass - expected;
+        a * self.model.mass - expected
     }
 
     /// True force (N, world) and torque (N m, body) of each disturbance at the tick that `decide` began, in
@@ -199,7 +176,7 @@ impl<T: Real> Flight<T> {
     /// is what the air does to the body with it, less what it does without it; that of a load is what the
     /// vehicle feels of it.
     pub fn attributed(&self, before: [Source<T>; MOST]) -> [Push<T>; MOST] {
-        let (scene, held, acceleration) = (self.scene(), &self.held, self.look().acceleration);
+        let (scene, wind, acceleration) = (self.scene(), self.conditions.wind, self.acceleration());
         let gravity = Vec3::up(self.vehicle.gravity);
         let mut pushes = [Push::default(); MOST];
         for (push, source) in pushes.iter_mut().zip(before) {
@@ -208,8 +185,8 @@ impl<T: Real> Flight<T> {
                 Reach::Nothing | Reach::Rotors => Push::default(),
                 Reach::Body => source.push(&scene),
                 Reach::Air => {
-                    let without = held.wind - source.wind(&scene);
-                    let with = drag(&self.state, &self.vehicle, held.wind);
+                    let without = wind - source.wind(&scene);
+                    let with = drag(&self.state, &self.vehicle, wind);
                     let rest = drag(&self.state, &self.vehicle, without);
                     Push { force: with.force - rest.force, torque: with.torque - rest.torque }
                 }
@@ -221,11 +198,11 @@ impl<T: Real> Flight<T> {
                 Reach::Sling => {
                     let Sling { mass, length, .. } = source.sling(&scene);
                     let per_length = T::one() / length;
-                    let State { cargo, cargo_velocity, .. } = self.state;
-                    let q = cargo * per_length;
+                    let Hanging { place, velocity } = self.hanging;
+                    let q = place * per_length;
                     // Newton's law for what hangs, along the cable.
                     let along = q.dot(acceleration + gravity);
-                    let tension = mass * (cargo_velocity.norm_squared() * per_length - along);
+                    let tension = mass * (velocity.norm_squared() * per_length - along);
                     Push { force: q * tension.max(T::zero()), torque: Vec3::zero() }
                 }
             };
@@ -266,10 +243,14 @@ impl<T: Real> Work for Survey<'_, T> {
     }
 }
 
-/// Adds what all disturbances do but the harmonic ones.
+/// All together: what the harmonic ones do, and what the others add.
 #[inline(never)]
-fn survey<T: Real>(sources: &mut [Source<T>; MOST], scene: &Scene<T>, all: &mut Surroundings<T>) {
-    *all = wide::<T, _>(Survey { sources, scene: *scene, all: *all });
+fn survey<T: Real>(
+    sources: &mut [Source<T>; MOST],
+    scene: Scene<T>,
+    all: Surroundings<T>,
+) -> Surroundings<T> {
+    wide::<T, _>(Survey { sources, scene, all })
 }
 
 /// Common place of two loads.
