@@ -13,5 +13,6 @@ pub mod dynamics;
 pub mod flight;
 pub mod random;
 pub mod reference;
+pub mod sensor;
 pub mod state;
 pub mod vehicle;
