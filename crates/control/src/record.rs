@@ -286,11 +286,20 @@ impl<T: Real, R: Record<T>, const K: usize> Record<T> for [R; K] {
         rows: [&Self; M],
         f: &mut impl FnMut([T; M]) -> U,
     ) -> Self::With<U> {
-        from_index(|k| R::zip(each(rows, |row| &row[k]), f))
+        // No closure round the items: the compiler would not inline it where they are large.
+        let mut out = [R::zip(each(rows, |row| &row[0]), f); K];
+        for k in 1..K {
+            out[k] = R::zip(each(rows, |row| &row[k]), f);
+        }
+        out
     }
     #[inline(always)]
     fn pick_lane(&self, i: usize) -> Self::With<T::Scalar> {
-        from_index(|k| self[k].pick_lane(i))
+        let mut out = [self[0].pick_lane(i); K];
+        for k in 1..K {
+            out[k] = self[k].pick_lane(i);
+        }
+        out
     }
     #[inline(always)]
     fn put_mapped<U: Real<Scalar = T>>(

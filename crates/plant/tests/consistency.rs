@@ -180,15 +180,14 @@ fn band() -> [f64; 2] {
 
 fn inside(name: &str, means: &[f64]) {
     let [lo, hi] = band();
-    println!("{name}: {means:.2?} in {lo:.2}..{hi:.2}");
     assert!(means.iter().all(|x| (lo..=hi).contains(x)), "{name}: {means:?} not in {lo}..{hi}");
 }
 
 #[test]
 fn the_chi_square_band_is_that_of_the_tables() {
-    // 0.05 % and 99.95 % quantiles of 900 degrees of freedom, over 60: from R's qchisq, 766.06 and 1045.4.
-    let [lo, hi] = band();
-    assert!((lo - 12.77).abs() < 0.05 && (hi - 17.42).abs() < 0.05, "{lo} {hi}");
+    // 0.05 % and 99.95 % quantiles of 900 degrees of freedom, from SciPy's chi2.ppf.
+    let [lo, hi] = band().map(|x| x * FLIGHTS as f64);
+    assert!((lo - 766.911).abs() < 0.05 && (hi - 1046.188).abs() < 0.05, "{lo} {hi}");
 }
 
 #[test]

@@ -17,7 +17,6 @@
 
 use crate::math::{Body, Frame, Rotation, Vec3, World};
 use crate::real::Real;
-use crate::record::from_index;
 
 use super::past::{Past, Row};
 
@@ -28,43 +27,53 @@ fn axes<T: Real, F: Frame>() -> [Vec3<T, F>; 3] {
     [Vec3::new(one, zero, zero), Vec3::new(zero, one, zero), Vec3::new(zero, zero, one)]
 }
 
-#[inline(always)]
-fn components<T: Real, F: Frame>(v: Vec3<T, F>) -> [T; 3] {
-    [v.x, v.y, v.z]
-}
-
 impl<T: Real> Past<T> {
     /// Measured position, with its standard deviation along each axis, m (1).
     #[inline(always)]
     pub fn position(&self, z: Vec3<T, World>, sigma: Vec3<T, World>) -> [Row<T>; 3] {
-        let (residual, sigma) = (components(z - self.position), components(sigma));
-        from_index(|i| self.row([axes()[i], Vec3::zero()], Vec3::zero(), residual[i], sigma[i]))
+        let (r, [x, y, z]) = (z - self.position, axes());
+        let still = Vec3::zero();
+        [
+            self.row([x, still], Vec3::zero(), r.x, sigma.x),
+            self.row([y, still], Vec3::zero(), r.y, sigma.y),
+            self.row([z, still], Vec3::zero(), r.z, sigma.z),
+        ]
     }
 
     /// Measured velocity, with its standard deviation along each axis, m/s (2).
     #[inline(always)]
     pub fn velocity(&self, z: Vec3<T, World>, sigma: Vec3<T, World>) -> [Row<T>; 3] {
-        let (residual, sigma) = (components(z - self.velocity), components(sigma));
-        from_index(|i| self.row([Vec3::zero(), axes()[i]], Vec3::zero(), residual[i], sigma[i]))
+        let (r, [x, y, z]) = (z - self.velocity, axes());
+        let here = Vec3::zero();
+        [
+            self.row([here, x], Vec3::zero(), r.x, sigma.x),
+            self.row([here, y], Vec3::zero(), r.y, sigma.y),
+            self.row([here, z], Vec3::zero(), r.z, sigma.z),
+        ]
     }
 
     /// Measured attitude, with its standard deviation about each body axis, rad (3).
     #[inline(always)]
     pub fn attitude(&self, z: Rotation<T, Body, World>, sigma: T) -> [Row<T>; 3] {
         let error: Rotation<T, Body, Body> = self.attitude.inverse() * z;
-        let residual = components(error.shortest().vector() * T::lit(2.0));
-        from_index(|i| self.row([Vec3::zero(); 2], axes()[i], residual[i], sigma))
+        let (r, [x, y, z]) = (error.shortest().vector() * T::lit(2.0), axes());
+        let none = [Vec3::zero(); 2];
+        [
+            self.row(none, x, r.x, sigma),
+            self.row(none, y, r.y, sigma),
+            self.row(none, z, r.z, sigma),
+        ]
     }
 
     /// Measured forward and left velocity, with their standard deviation, m/s (4).
     #[inline(always)]
-    pub fn flow(&self, z: [T; 2], sigma: T) -> [Row<T>; 2] {
+    pub fn flow(&self, [forward, left]: [T; 2], sigma: T) -> [Row<T>; 2] {
         let u = self.attitude.inverse() * self.velocity;
-        from_index(|i| {
-            let axis: Vec3<T, Body> = axes()[i];
-            let velocity = [Vec3::zero(), self.attitude * axis];
-            self.row(velocity, axis.cross(u), z[i] - components(u)[i], sigma)
-        })
+        let ([x, y, _], here) = (axes::<T, Body>(), Vec3::zero());
+        [
+            self.row([here, self.attitude.x_axis()], x.cross(u), forward - u.x, sigma),
+            self.row([here, self.attitude.y_axis()], y.cross(u), left - u.y, sigma),
+        ]
     }
 
     /// Measured height, with its standard deviation, m (5).

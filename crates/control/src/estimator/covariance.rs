@@ -97,28 +97,68 @@ const ON_DIAGONAL: [bool; 15] = {
     on
 };
 
+// Plain loops in place of closures over indices: the compiler does not inline those where they nest, and
+// a call in the middle of the loop costs the wide registers.
+
 /// Matrix product.
 #[inline(always)]
 pub fn product<T: Real>(a: &Block<T>, b: &Block<T>) -> Block<T> {
-    from_index(|i| from_index(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j]))
+    let mut out = *a;
+    for i in 0..3 {
+        for j in 0..3 {
+            out[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
+        }
+    }
+    out
 }
 
 /// Rows and columns exchanged.
 #[inline(always)]
 pub fn transposed<T: Real>(a: &Block<T>) -> Block<T> {
-    from_index(|i| from_index(|j| a[j][i]))
+    let [[a, b, c], [d, e, f], [g, h, i]] = *a;
+    [[a, d, g], [b, e, h], [c, f, i]]
 }
 
 /// Number by number.
 #[inline(always)]
 fn plus<T: Real>(a: &Block<T>, b: &Block<T>) -> Block<T> {
-    from_index(|i| from_index(|j| a[i][j] + b[i][j]))
+    let mut out = *a;
+    for i in 0..3 {
+        for j in 0..3 {
+            out[i][j] += b[i][j];
+        }
+    }
+    out
 }
 
-/// A multiple.
-#[inline(always)]
-pub fn times<T: Real>(k: T, a: &Block<T>) -> Block<T> {
-    from_index(|i| from_index(|j| k * a[i][j]))
+/// What multiplies a block from the left.
+pub trait Factor<T: Real> {
+    /// The product.
+    fn of(&self, block: &Block<T>) -> Block<T>;
+}
+
+impl<T: Real> Factor<T> for Block<T> {
+    #[inline(always)]
+    fn of(&self, block: &Block<T>) -> Block<T> {
+        product(self, block)
+    }
+}
+
+/// A multiple of the identity.
+#[derive(Clone, Copy, Debug)]
+pub struct Multiple<T>(pub T);
+
+impl<T: Real> Factor<T> for Multiple<T> {
+    #[inline(always)]
+    fn of(&self, block: &Block<T>) -> Block<T> {
+        let mut out = *block;
+        for row in &mut out {
+            for x in row {
+                *x = self.0 * *x;
+            }
+        }
+        out
+    }
 }
 
 /// The matrix with these columns.
@@ -135,9 +175,14 @@ impl<T: Real> Covariance<T> {
     /// Independent errors with these standard deviations.
     pub fn diagonal(deviations: &ErrorState<T>) -> Self {
         let mut all = Self::default();
-        all.add(&ErrorState::from_parts(from_index(|i| {
-            from_index(|a| deviations.parts()[i][a].sq())
-        })));
+        let deviations = deviations.parts();
+        let mut variances = deviations;
+        for i in 0..5 {
+            for a in 0..3 {
+                variances[i][a] = deviations[i][a].sq();
+            }
+        }
+        all.add(&ErrorState::from_parts(variances));
         all
     }
 
@@ -159,7 +204,13 @@ impl<T: Real> Covariance<T> {
     /// Variances.
     #[inline(always)]
     pub fn variances(&self) -> ErrorState<T> {
-        ErrorState::from_parts(from_index(|i| from_index(|a| self.block[place(i, i)][a][a])))
+        let mut variances = [[T::zero(); 3]; 5];
+        for i in 0..5 {
+            for a in 0..3 {
+                variances[i][a] = self.block[place(i, i)][a][a];
+            }
+        }
+        ErrorState::from_parts(variances)
     }
 
     /// Adds to the variances.
@@ -173,42 +224,57 @@ impl<T: Real> Covariance<T> {
         }
     }
 
-    /// Raises variances that are lower.
+    /// Raises standard deviations that are lower, one bound for each part.
     #[inline(always)]
-    pub fn raise(&mut self, lowest: &Parts<T>) {
+    pub fn raise(&mut self, lowest: [f64; 5]) {
         for i in 0..5 {
             for a in 0..3 {
                 let variance = &mut self.block[place(i, i)][a][a];
-                *variance = variance.max(lowest[i][a]);
+                *variance = variance.max(T::lit(lowest[i] * lowest[i]));
             }
         }
     }
 
-    /// Error `i` gains M times error `j` (1); `m` multiplies a block by M from the left.
+    /// Error `I` gains M times error `J` (1). Written out by const numbers: a loop over the columns would be
+    /// turned into wide registers of its own, across the lanes.
     #[inline(always)]
-    pub fn shear(&mut self, i: usize, j: usize, m: impl Fn(&Block<T>) -> Block<T>) {
-        let old = self.get(i, j);
-        for k in 0..5 {
-            if k != i {
-                self.put(i, k, plus(&self.get(i, k), &m(&self.get(j, k))));
-            }
-        }
-        let mean = times(T::lit(0.5), &plus(&old, &self.get(i, j)));
-        let y = m(&transposed(&mean));
-        self.put(i, i, plus(&self.get(i, i), &plus(&y, &transposed(&y))));
+    pub fn shear<const I: usize, const J: usize>(&mut self, m: &impl Factor<T>) {
+        let (old, half) = (self.get(I, J), Multiple(T::lit(0.5)));
+        self.shear_block::<I, J, 0>(m);
+        self.shear_block::<I, J, 1>(m);
+        self.shear_block::<I, J, 2>(m);
+        self.shear_block::<I, J, 3>(m);
+        self.shear_block::<I, J, 4>(m);
+        let mean = half.of(&plus(&old, &self.get(I, J)));
+        let y = m.of(&transposed(&mean));
+        self.put(I, I, plus(&self.get(I, I), &plus(&y, &transposed(&y))));
     }
 
-    /// Error `i` is multiplied by E (2).
     #[inline(always)]
-    pub fn turn(&mut self, i: usize, e: &Block<T>) {
-        for k in 0..5 {
-            if k != i {
-                self.put(i, k, product(e, &self.get(i, k)));
-            }
+    fn shear_block<const I: usize, const J: usize, const K: usize>(&mut self, m: &impl Factor<T>) {
+        if K != I {
+            self.put(I, K, plus(&self.get(I, K), &m.of(&self.get(J, K))));
         }
-        let half = product(e, &self.get(i, i));
+    }
+
+    /// Error `I` is multiplied by E (2).
+    #[inline(always)]
+    pub fn turn<const I: usize>(&mut self, e: &Block<T>) {
+        self.turn_block::<I, 0>(e);
+        self.turn_block::<I, 1>(e);
+        self.turn_block::<I, 2>(e);
+        self.turn_block::<I, 3>(e);
+        self.turn_block::<I, 4>(e);
+        let half = product(e, &self.get(I, I));
         let whole = product(e, &transposed(&half));
-        self.put(i, i, times(T::lit(0.5), &plus(&whole, &transposed(&whole))));
+        self.put(I, I, Multiple(T::lit(0.5)).of(&plus(&whole, &transposed(&whole))));
+    }
+
+    #[inline(always)]
+    fn turn_block<const I: usize, const K: usize>(&mut self, e: &Block<T>) {
+        if K != I {
+            self.put(I, K, product(e, &self.get(I, K)));
+        }
     }
 
     /// c = P h.
@@ -247,9 +313,9 @@ impl<T: Real> Covariance<T> {
     }
 
     /// Brings variances above `highest` back to it and keeps the correlations; lanes that are not
-    /// finite take `spare`. The answer tells where it did so.
+    /// finite begin anew with these deviations. The answer tells where it did so.
     #[inline(always)]
-    pub fn bound(&mut self, highest: T, spare: impl Fn() -> Self) -> T::Mask {
+    pub fn bound(&mut self, highest: T, deviations: &ErrorState<T>) -> T::Mask {
         let (mut largest, mut sum) = (T::zero(), [[T::zero(); 3]; 3]);
         for (k, block) in self.block.iter().enumerate() {
             sum = plus(&sum, block);
@@ -270,15 +336,15 @@ impl<T: Real> Covariance<T> {
             + sum[2][2];
         let good = largest.le(highest) & sum.is_finite();
         if !good.all() {
-            self.mend(highest, &spare());
+            self.mend(highest, deviations);
         }
         !good
     }
 
     #[cold]
     #[inline(never)]
-    fn mend(&mut self, highest: T, spare: &Self) {
-        *self = blend(self.finite(), self, spare);
+    fn mend(&mut self, highest: T, deviations: &ErrorState<T>) {
+        *self = blend(self.finite(), self, &Self::diagonal(deviations));
         let scale: Parts<T> = from_index(|i| {
             from_index(|a| {
                 let variance = self.block[place(i, i)][a][a];

@@ -29,7 +29,7 @@ use crate::controller::mended;
 use crate::math::{Body, Vec3};
 use crate::real::{Mask, Precision as _, Real};
 use crate::record;
-use crate::record::{Record as _, blend, from_index};
+use crate::record::{Record as _, blend};
 use crate::signals::{Measurement, Model};
 
 use super::covariance::{Covariance, ErrorState, Parts};
@@ -141,7 +141,8 @@ impl<T: Real> Eskf<T> {
     /// The nominal state moves by `dt` seconds to the time of this sample (1). What of it is not finite
     /// or beyond what a sensor can read is replaced by the sample before; no time passes where `dt` is
     /// not one between 0 and 1 s.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))] // a frame of its own without optimisation
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn predict(&mut self, imu: &Imu<T>, dt: T) {
         let (imu, dt) = self.checked(imu, dt);
         let Nominal { position, velocity, attitude, gyro_bias, accelerometer_bias } = self.nominal;
@@ -223,14 +224,15 @@ impl<T: Real> Eskf<T> {
         for row in rows {
             self.take(row, mask, &mut error);
         }
-        self.covariance.raise(&from_index(|i| [T::lit(NARROWEST[i] * NARROWEST[i]); 3]));
+        self.covariance.raise(NARROWEST);
         let corrected = self.nominal.plus(&ErrorState::from_parts(error));
         let good = mask & corrected.sum(|x| x).is_finite();
         self.nominal = blend(good, &corrected, &self.nominal);
     }
 
     /// One scalar measurement: the covariance shrinks, the error gathered so far grows.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))] // a frame of its own without optimisation
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn take(&mut self, row: &Row<T>, mask: T::Mask, error: &mut Parts<T>) {
         let gains = &self.gains;
         let h = row.gradient.parts();
@@ -247,14 +249,14 @@ impl<T: Real> Eskf<T> {
         let taken = mask & sound & inside;
         let per_root = T::one() / s.sqrt();
         let scaled = T::select(taken, y * per_root, T::zero());
-        let u: Parts<T> =
-            from_index(|i| from_index(|a| T::select(taken, c[i][a] * per_root, T::zero())));
-        self.covariance.deflate(&u);
+        let mut u = c;
         for i in 0..5 {
             for a in 0..3 {
+                u[i][a] = T::select(taken, c[i][a] * per_root, T::zero());
                 error[i][a] += u[i][a] * scaled;
             }
         }
+        self.covariance.deflate(&u);
     }
 
     /// What the laws are told: `measurement` with the estimate in place of the truth.

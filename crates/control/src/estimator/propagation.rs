@@ -6,8 +6,8 @@ use crate::record;
 use crate::record::blend;
 
 use super::covariance::{
-    ACCELEROMETER_BIAS, ATTITUDE, Covariance, ErrorState, GYRO_BIAS, POSITION, VELOCITY, columns,
-    product, times,
+    ACCELEROMETER_BIAS, ATTITUDE, Covariance, ErrorState, GYRO_BIAS, Multiple, POSITION, VELOCITY,
+    columns,
 };
 use super::eskf::Eskf;
 
@@ -37,7 +37,7 @@ impl<T: Real> Eskf<T> {
             return;
         }
         let mut moved = self.moved();
-        let lost = moved.bound(T::lit(WIDEST), || Covariance::diagonal(&self.initial()));
+        let lost = moved.bound(T::lit(WIDEST), &self.initial());
         self.flag = T::select(lost & due, T::one(), self.flag);
         if due.all() {
             (self.covariance, self.passed) = (moved, Passed::default());
@@ -48,7 +48,8 @@ impl<T: Real> Eskf<T> {
     }
 
     /// The covariance now, from the last one and what has passed (3).
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))] // a frame of its own without optimisation
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn moved(&self) -> Covariance<T> {
         let Passed { time, turn, velocity: s } = self.passed;
         let half = time.half();
@@ -56,22 +57,21 @@ impl<T: Real> Eskf<T> {
         let then = now * turn.inverse();
         let (x, y, z) = (then.x_axis(), then.y_axis(), then.z_axis());
         let tilting = columns(x.cross(s), y.cross(s), z.cross(s)); // -[S]x R_0
-        let mean = |a: Vec3<T, World>, b: Vec3<T, World>| (a + b) * (-half);
         let (nx, ny, nz) = (now.x_axis(), now.y_axis(), now.z_axis());
-        let leaning = columns(mean(x, nx), mean(y, ny), mean(z, nz));
+        let leaning = columns((x + nx) * -half, (y + ny) * -half, (z + nz) * -half);
         let back = turn.inverse();
         let e = columns(back.x_axis(), back.y_axis(), back.z_axis());
 
         let mut p = self.covariance;
         let noise = self.noise(half);
         p.add(&noise);
-        p.shear(POSITION, VELOCITY, |block| times(half, block));
-        p.shear(ATTITUDE, GYRO_BIAS, |block| times(-half, block));
-        p.shear(VELOCITY, ATTITUDE, |block| product(&tilting, block));
-        p.shear(VELOCITY, ACCELEROMETER_BIAS, |block| product(&leaning, block));
-        p.turn(ATTITUDE, &e);
-        p.shear(ATTITUDE, GYRO_BIAS, |block| times(-half, block));
-        p.shear(POSITION, VELOCITY, |block| times(half, block));
+        p.shear::<POSITION, VELOCITY>(&Multiple(half));
+        p.shear::<ATTITUDE, GYRO_BIAS>(&Multiple(-half));
+        p.shear::<VELOCITY, ATTITUDE>(&tilting);
+        p.shear::<VELOCITY, ACCELEROMETER_BIAS>(&leaning);
+        p.turn::<ATTITUDE>(&e);
+        p.shear::<ATTITUDE, GYRO_BIAS>(&Multiple(-half));
+        p.shear::<POSITION, VELOCITY>(&Multiple(half));
         p.add(&noise);
         p
     }

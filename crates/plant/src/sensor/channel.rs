@@ -40,7 +40,8 @@ impl<T: Real> Channel<T> {
     }
 
     /// One tick: what arrives at its end.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))] // a frame of its own without optimisation
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn sense(&mut self, truth: &Truth<T>, moment: &Moment<T>) -> Sample<T> {
         self.sensor.settle(truth, moment);
         let due = self.link.due(moment);
@@ -50,7 +51,8 @@ impl<T: Real> Channel<T> {
         self.link.pass(due, values, moment)
     }
 
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))] // a frame of its own without optimisation
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sample(&mut self, due: T::Mask, truth: &Truth<T>, tick: T) -> [T; 7] {
         let normal = self.link.normals(tick, self.sensor.pairs());
         self.sensor.sample(truth, &Draw { due, interval: self.link.interval(), normal })
@@ -63,7 +65,8 @@ impl<T: Real> Channel<T> {
     }
 
     /// What the sample says of the filter's state.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))] // a frame of its own without optimisation
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn rows(&self, sample: &Sample<T>, filter: &Eskf<T>) -> Rows<T> {
         self.sensor.rows(&sample.values, &filter.past(sample.age, &self.lag))
     }

@@ -126,7 +126,8 @@ impl<T: Real> Sensing<T> {
     }
 
     /// Sensors, then filter, which moves on by `passed` seconds.
-    #[inline(always)]
+    #[cfg_attr(debug_assertions, inline(never))] // a frame of its own without optimisation
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn fuse(&mut self, truth: &Truth<T>, moment: &Moment<T>, passed: T) {
         let mut samples = [Sample::none(); MOST];
         let mut fresh = T::Mask::splat(false);
