@@ -4,6 +4,9 @@
 //! With e the fifteen errors and P the filter's covariance, the sum of e' P^-1 e over n flights has the
 //! chi-square distribution of 15 n degrees of freedom. Its quantiles are those of Wilson and Hilferty
 //! (1931): d (1 - 2/(9 d) + z sqrt(2/(9 d)))^3.
+//!
+//! Fifty flights would show an error of 20 %. With 1500 flights everything below is inside its band of 3 %
+//! as well, but satellites 0.1 s late: 15.1 to 15.6 in place of 15, for what the compensation leaves out.
 // Tests compare bits, take the standard library as their second opinion, and print figures as their
 // source prints them.
 #![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
@@ -21,7 +24,7 @@ use stormpetrel_plant::vehicle::Vehicle;
 
 type V = Vector3<f64>;
 const DT: f64 = 4e-3;
-const FLIGHTS: usize = 60;
+const FLIGHTS: usize = 50;
 const G: f64 = 9.8;
 
 fn vector<F: Frame>(v: Vec3<f64, F>) -> V {
@@ -139,7 +142,7 @@ fn errors(sensing: &Sensing<f64>, t: f64) -> DVector<f64> {
 
 /// Mean of e' P^-1 e over all flights at whole multiples of two seconds.
 fn nees(aiding: &[SensorSettings], gains: Gains<f64>) -> Vec<f64> {
-    let (moments, ticks) = (6, 500);
+    let (moments, ticks) = (4, 500);
     let mut sums = vec![0.0; moments];
     let (mut rejected, mut taken) = (0.0, 0.0);
     for flight in 0..FLIGHTS {
@@ -185,9 +188,9 @@ fn inside(name: &str, means: &[f64]) {
 
 #[test]
 fn the_chi_square_band_is_that_of_the_tables() {
-    // 0.05 % and 99.95 % quantiles of 900 degrees of freedom, from SciPy's chi2.ppf.
+    // 0.05 % and 99.95 % quantiles of 750 degrees of freedom, from SciPy's chi2.ppf.
     let [lo, hi] = band().map(|x| x * FLIGHTS as f64);
-    assert!((lo - 766.911).abs() < 0.05 && (hi - 1046.188).abs() < 0.05, "{lo} {hi}");
+    assert!((lo - 629.071).abs() < 0.05 && (hi - 884.027).abs() < 0.05, "{lo} {hi}");
 }
 
 #[test]
@@ -228,5 +231,5 @@ fn a_filter_that_trusts_too_much_is_found_out() {
     // The same behind the back of the propagation: sensors twice as noisy as believed.
     let blind = Gains { gyro_noise: 1.25e-4, accelerometer_noise: 1e-3, ..Gains::default() };
     let means = nees(&cameras(0.0, 0.0), blind);
-    assert!(means.iter().filter(|x| **x > hi).count() >= 5, "{means:?} not above {hi}");
+    assert!(means.iter().filter(|x| **x > hi).count() >= 3, "{means:?} not above {hi}");
 }

@@ -1,7 +1,6 @@
 //! What each kind of sensor says of the state: its rows of the measurement matrix.
 //!
-//! With R, p, v the state when the sample was taken and [a]x b = a x b, in the notation of
-//! [`past`](super::past):
+//! With R, p, v the state when the sample was taken, in the notation of [`past`](super::past):
 //!
 //!   position:   z = p + n                     g_p = e_i                                      (1)
 //!   velocity:   z = v + n                     g_v = e_i                                      (2)

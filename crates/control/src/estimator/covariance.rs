@@ -13,13 +13,13 @@
 //! Source: Bierman, Factorization Methods for Discrete Sequential Estimation (1977), for the scalar
 //! update; the rest is linear algebra.
 
-use crate::math::{Body, Frame, Vec3, World};
+use crate::math::{Body, Vec3, World};
 use crate::real::{Mask, Precision as _, Real};
 use crate::record;
 use crate::record::{Record as _, blend, from_index};
 
-/// Three by three numbers, row by row.
-pub type Block<T> = [[T; 3]; 3];
+use super::block::{Block, Factor, Multiple, plus, product, transposed};
+
 /// Fifteen numbers, three for each part of the state error.
 pub type Parts<T> = [[T; 3]; 5];
 
@@ -97,76 +97,6 @@ const ON_DIAGONAL: [bool; 15] = {
     on
 };
 
-// Plain loops in place of closures over indices: the compiler does not inline those where they nest, and
-// a call in the middle of the loop costs the wide registers.
-
-/// Matrix product.
-#[inline(always)]
-pub fn product<T: Real>(a: &Block<T>, b: &Block<T>) -> Block<T> {
-    let mut out = *a;
-    for i in 0..3 {
-        for j in 0..3 {
-            out[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
-        }
-    }
-    out
-}
-
-/// Rows and columns exchanged.
-#[inline(always)]
-pub fn transposed<T: Real>(a: &Block<T>) -> Block<T> {
-    let [[a, b, c], [d, e, f], [g, h, i]] = *a;
-    [[a, d, g], [b, e, h], [c, f, i]]
-}
-
-/// Number by number.
-#[inline(always)]
-fn plus<T: Real>(a: &Block<T>, b: &Block<T>) -> Block<T> {
-    let mut out = *a;
-    for i in 0..3 {
-        for j in 0..3 {
-            out[i][j] += b[i][j];
-        }
-    }
-    out
-}
-
-/// What multiplies a block from the left.
-pub trait Factor<T: Real> {
-    /// The product.
-    fn of(&self, block: &Block<T>) -> Block<T>;
-}
-
-impl<T: Real> Factor<T> for Block<T> {
-    #[inline(always)]
-    fn of(&self, block: &Block<T>) -> Block<T> {
-        product(self, block)
-    }
-}
-
-/// A multiple of the identity.
-#[derive(Clone, Copy, Debug)]
-pub struct Multiple<T>(pub T);
-
-impl<T: Real> Factor<T> for Multiple<T> {
-    #[inline(always)]
-    fn of(&self, block: &Block<T>) -> Block<T> {
-        let mut out = *block;
-        for row in &mut out {
-            for x in row {
-                *x = self.0 * *x;
-            }
-        }
-        out
-    }
-}
-
-/// The matrix with these columns.
-#[inline(always)]
-pub fn columns<T: Real, F: Frame>(x: Vec3<T, F>, y: Vec3<T, F>, z: Vec3<T, F>) -> Block<T> {
-    [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]]
-}
-
 impl<T: Real> Covariance<T> {
     /// Smallest variance of a measurement, over that of its prediction: its correction takes no more
     /// digits than this leaves, in either precision.
@@ -235,46 +165,31 @@ impl<T: Real> Covariance<T> {
         }
     }
 
-    /// Error `I` gains M times error `J` (1). Written out by const numbers: a loop over the columns would be
-    /// turned into wide registers of its own, across the lanes.
+    /// Error `i` gains M times error `j` (1).
     #[inline(always)]
-    pub fn shear<const I: usize, const J: usize>(&mut self, m: &impl Factor<T>) {
-        let (old, half) = (self.get(I, J), Multiple(T::lit(0.5)));
-        self.shear_block::<I, J, 0>(m);
-        self.shear_block::<I, J, 1>(m);
-        self.shear_block::<I, J, 2>(m);
-        self.shear_block::<I, J, 3>(m);
-        self.shear_block::<I, J, 4>(m);
-        let mean = half.of(&plus(&old, &self.get(I, J)));
+    pub fn shear(&mut self, i: usize, j: usize, m: &impl Factor<T>) {
+        let (old, half) = (self.get(i, j), Multiple(T::lit(0.5)));
+        for k in 0..5 {
+            if k != i {
+                self.put(i, k, plus(&self.get(i, k), &m.of(&self.get(j, k))));
+            }
+        }
+        let mean = half.of(&plus(&old, &self.get(i, j)));
         let y = m.of(&transposed(&mean));
-        self.put(I, I, plus(&self.get(I, I), &plus(&y, &transposed(&y))));
+        self.put(i, i, plus(&self.get(i, i), &plus(&y, &transposed(&y))));
     }
 
+    /// Error `i` is multiplied by E (2).
     #[inline(always)]
-    fn shear_block<const I: usize, const J: usize, const K: usize>(&mut self, m: &impl Factor<T>) {
-        if K != I {
-            self.put(I, K, plus(&self.get(I, K), &m.of(&self.get(J, K))));
+    pub fn turn(&mut self, i: usize, e: &Block<T>) {
+        for k in 0..5 {
+            if k != i {
+                self.put(i, k, product(e, &self.get(i, k)));
+            }
         }
-    }
-
-    /// Error `I` is multiplied by E (2).
-    #[inline(always)]
-    pub fn turn<const I: usize>(&mut self, e: &Block<T>) {
-        self.turn_block::<I, 0>(e);
-        self.turn_block::<I, 1>(e);
-        self.turn_block::<I, 2>(e);
-        self.turn_block::<I, 3>(e);
-        self.turn_block::<I, 4>(e);
-        let half = product(e, &self.get(I, I));
+        let half = product(e, &self.get(i, i));
         let whole = product(e, &transposed(&half));
-        self.put(I, I, Multiple(T::lit(0.5)).of(&plus(&whole, &transposed(&whole))));
-    }
-
-    #[inline(always)]
-    fn turn_block<const I: usize, const K: usize>(&mut self, e: &Block<T>) {
-        if K != I {
-            self.put(I, K, product(e, &self.get(I, K)));
-        }
+        self.put(i, i, Multiple(T::lit(0.5)).of(&plus(&whole, &transposed(&whole))));
     }
 
     /// c = P h.

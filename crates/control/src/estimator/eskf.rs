@@ -7,13 +7,13 @@
 //!
 //! Its errors (true less estimated; attitude local, R = R_est Exp(dtheta)) obey
 //!
-//!   dp' = dv,   dv' = -R [f]x dtheta - R db_a - R n_a,   dtheta' = -[w]x dtheta - db_g - n_g,
+//!   dp' = dv,   dv' = -R (f x dtheta) - R db_a - R n_a,   dtheta' = -w x dtheta - db_g - n_g,
 //!   db_g' = n_wg,   db_a' = n_wa                                                             (2)
 //!
 //! Over D seconds, with the turn E' = Exp of w and the velocity S = sum of dv gathered on the way, (2)
 //! is, up to terms of third order in D,
 //!
-//!   dp += D/2 dv;  dtheta -= D/2 db_g;  dv += -[S]x R_0 dtheta;  dv += -D (R_0 + R_1)/2 db_a;
+//!   dp += D/2 dv;  dtheta -= D/2 db_g;  dv += -S x (R_0 dtheta);  dv += -D (R_0 + R_1)/2 db_a;
 //!   dtheta := E dtheta;  dtheta -= D/2 db_g;  dp += D/2 dv                                   (3)
 //!
 //! with half of the noise, D times the densities squared, added before and half after. The covariance

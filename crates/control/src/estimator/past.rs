@@ -5,8 +5,8 @@
 //! with a and w the means over the last tau seconds. To first order in the errors of the state now,
 //! with f the specific force that belongs to a (Body):
 //!
-//!   dp_d = dp - tau dv + tau^2/2 da,   dv_d = dv - tau da,   da = -R [f]x dtheta - R db_a    (2)
-//!   dtheta_d = (I + tau [w]x) dtheta + tau db_g                                              (3)
+//!   dp_d = dp - tau dv + tau^2/2 da,   dv_d = dv - tau da,   da = -R (f x dtheta) - R db_a   (2)
+//!   dtheta_d = dtheta + tau w x dtheta + tau db_g                                            (3)
 //!
 //! so a measurement with the gradients (g_p, g_v, g_theta) at that time has the gradients now
 //!

@@ -5,9 +5,9 @@ use crate::real::{Mask as _, Real};
 use crate::record;
 use crate::record::blend;
 
+use super::block::{Multiple, columns};
 use super::covariance::{
-    ACCELEROMETER_BIAS, ATTITUDE, Covariance, ErrorState, GYRO_BIAS, Multiple, POSITION, VELOCITY,
-    columns,
+    ACCELEROMETER_BIAS, ATTITUDE, Covariance, ErrorState, GYRO_BIAS, POSITION, VELOCITY,
 };
 use super::eskf::Eskf;
 
@@ -56,7 +56,7 @@ impl<T: Real> Eskf<T> {
         let now = self.nominal.attitude;
         let then = now * turn.inverse();
         let (x, y, z) = (then.x_axis(), then.y_axis(), then.z_axis());
-        let tilting = columns(x.cross(s), y.cross(s), z.cross(s)); // -[S]x R_0
+        let tilting = columns(x.cross(s), y.cross(s), z.cross(s)); // -S x R_0
         let (nx, ny, nz) = (now.x_axis(), now.y_axis(), now.z_axis());
         let leaning = columns((x + nx) * -half, (y + ny) * -half, (z + nz) * -half);
         let back = turn.inverse();
@@ -65,13 +65,13 @@ impl<T: Real> Eskf<T> {
         let mut p = self.covariance;
         let noise = self.noise(half);
         p.add(&noise);
-        p.shear::<POSITION, VELOCITY>(&Multiple(half));
-        p.shear::<ATTITUDE, GYRO_BIAS>(&Multiple(-half));
-        p.shear::<VELOCITY, ATTITUDE>(&tilting);
-        p.shear::<VELOCITY, ACCELEROMETER_BIAS>(&leaning);
-        p.turn::<ATTITUDE>(&e);
-        p.shear::<ATTITUDE, GYRO_BIAS>(&Multiple(-half));
-        p.shear::<POSITION, VELOCITY>(&Multiple(half));
+        p.shear(POSITION, VELOCITY, &Multiple(half));
+        p.shear(ATTITUDE, GYRO_BIAS, &Multiple(-half));
+        p.shear(VELOCITY, ATTITUDE, &tilting);
+        p.shear(VELOCITY, ACCELEROMETER_BIAS, &leaning);
+        p.turn(ATTITUDE, &e);
+        p.shear(ATTITUDE, GYRO_BIAS, &Multiple(-half));
+        p.shear(POSITION, VELOCITY, &Multiple(half));
         p.add(&noise);
         p
     }
