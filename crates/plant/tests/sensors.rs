@@ -610,6 +610,18 @@ fn a_set_of_sensors_is_checked_when_it_is_loaded() {
 }
 
 #[test]
+fn what_finds_no_room_is_lost_and_the_rest_arrives_in_order() {
+    // Fifty periods of delay, which the check refuses: eight places are left.
+    let timing = Timing { rate_hz: 1000.0, latency: 0.05, jitter: 0.0, dropout: 0.0 };
+    let mut one = height(timing, 8);
+    let got = samples(&mut one, 500, 1e-3, clock);
+    let taken: Vec<f64> = got.iter().map(|(_, s)| s.values[0]).collect();
+    assert_eq!(taken[..9], [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 51.0]);
+    assert!(got.iter().all(|(tick, s)| *tick as f64 - s.values[0] == 50.0));
+    assert_eq!(one.link.waiting, 8.0);
+}
+
+#[test]
 fn every_kind_is_in_the_registry_with_settings_in_range() {
     assert_eq!(SensorSettings::NAMES[0], "none");
     assert_eq!(SensorSettings::NAMES[1..], ALL);
