@@ -292,7 +292,7 @@ fn bounded<T: Real, R: Plain<T>>(record: &R, limit: T) -> R {
 
 /// Number by number: the record's own where finite, else that of `spare`.
 #[inline(always)]
-fn mended<T: Real, R: Plain<T>>(record: &R, spare: &R) -> R {
+pub fn mended<T: Real, R: Plain<T>>(record: &R, spare: &R) -> R {
     R::zip([record, spare], &mut |[x, y]| T::select(x.is_finite(), x, y))
 }
 

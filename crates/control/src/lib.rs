@@ -22,6 +22,7 @@ pub mod allocation;
 pub mod attitude;
 pub mod attitude_reference;
 pub mod controller;
+pub mod estimator;
 pub mod filter;
 pub mod lanes;
 pub mod math;

@@ -261,19 +261,22 @@ impl<T: Real> Uniform for T {
     }
 }
 
-/// The digits of array positions, as names; lists in a record are at most this long.
-const INDEX: [&str; 8] = ["0", "1", "2", "3", "4", "5", "6", "7"];
+/// Array positions as names; a longer list in a record does not compile.
+const INDEX: [&str; 16] =
+    ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15"];
 
 impl<T: Real, R: Record<T>, const K: usize> Record<T> for [R; K] {
     type With<U: Real> = [R::With<U>; K];
     #[inline(always)]
     fn visit(&self, path: &Path<'_>, meta: &Meta, v: &mut impl Visitor<T>) {
+        const { assert!(K <= INDEX.len(), "a list this long has no names") };
         for (item, name) in self.iter().zip(INDEX) {
             item.visit(&path.join(name), meta, v);
         }
     }
     #[inline(always)]
     fn visit_mut(&mut self, path: &Path<'_>, meta: &Meta, v: &mut impl VisitorMut<T>) {
+        const { assert!(K <= INDEX.len(), "a list this long has no names") };
         for (item, name) in self.iter_mut().zip(INDEX) {
             item.visit_mut(&path.join(name), meta, v);
         }
@@ -283,11 +286,20 @@ impl<T: Real, R: Record<T>, const K: usize> Record<T> for [R; K] {
         rows: [&Self; M],
         f: &mut impl FnMut([T; M]) -> U,
     ) -> Self::With<U> {
-        from_index(|k| R::zip(each(rows, |row| &row[k]), f))
+        // No closure round the items: the compiler would not inline it where they are large.
+        let mut out = [R::zip(each(rows, |row| &row[0]), f); K];
+        for k in 1..K {
+            out[k] = R::zip(each(rows, |row| &row[k]), f);
+        }
+        out
     }
     #[inline(always)]
     fn pick_lane(&self, i: usize) -> Self::With<T::Scalar> {
-        from_index(|k| self[k].pick_lane(i))
+        let mut out = [self[0].pick_lane(i); K];
+        for k in 1..K {
+            out[k] = self[k].pick_lane(i);
+        }
+        out
     }
     #[inline(always)]
     fn put_mapped<U: Real<Scalar = T>>(

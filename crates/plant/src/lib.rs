@@ -13,6 +13,7 @@ pub mod dynamics;
 pub mod flight;
 pub mod random;
 pub mod reference;
+pub mod sensor;
 pub mod sling;
 pub mod state;
 pub mod timing;
