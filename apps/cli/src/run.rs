@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 use stormpetrel_lab::figures::{self, Drawing};
-use stormpetrel_lab::fly::fly;
+use stormpetrel_lab::fly::fly_told_apart;
 use stormpetrel_lab::log::Csv;
 use stormpetrel_lab::output::{Folder, manifest_json, metrics_json, variants_json};
 use stormpetrel_lab::plot::png;
@@ -90,13 +90,14 @@ pub fn choose(file: File, variant: Option<&str>) -> Result<Vec<Scenario>, Failur
 pub fn fly_into(folder: &Folder, prefix: &str, scenario: Scenario) -> std::io::Result<Flown> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number by rule
     let every = scenario.run.log_every as u64;
-    let mut csv = Csv::new(folder.create(&format!("{prefix}flight.csv"))?, every)?;
+    let file = folder.create(&format!("{prefix}flight.csv"))?;
+    let mut csv = Csv::new(file, every, scenario.disturbance.len())?;
     let mut trace = Trace::new(scenario.ticks(), POINTS);
     let mut written = Ok(());
-    let outcome = fly(&scenario, |tick, errors| {
-        trace.push(tick, errors);
+    let outcome = fly_told_apart(&scenario, |seen| {
+        trace.push(seen);
         if written.is_ok() {
-            written = csv.push(tick);
+            written = csv.push(seen.tick, seen.sources);
         }
     });
     written?;

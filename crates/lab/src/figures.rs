@@ -1,6 +1,8 @@
 //! The figures of a flight.
 
 use crate::plot::{Figure, Limit, Panel, Path, Scene, Series};
+use stormpetrel_control::registry::Settings as _;
+
 use crate::scenario::Scenario;
 use crate::trace::{Axes, Trace};
 
@@ -88,6 +90,46 @@ pub fn disturbance(title: &str, trace: &Trace) -> Drawing {
     Drawing { name: "disturbance", svg: figure.svg() }
 }
 
+/// What each disturbance does by itself, and the wind.
+fn sources(scenario: &Scenario, trace: &Trace) -> Drawing {
+    let mut panels: Vec<_> = AXES
+        .iter()
+        .enumerate()
+        .map(|(axis, name)| {
+            let lines = trace.sources.iter().zip(&scenario.disturbance).enumerate();
+            let lines = lines.map(|(i, (force, source))| {
+                series(format!("{i} {}", source.name()), &trace.time, &force[axis], i)
+            });
+            panel(&format!("True force, {name} axis"), "force (N)", lines.collect())
+        })
+        .collect();
+    let windy = trace.wind.iter().flatten().any(|w| *w != 0.0);
+    if windy {
+        let winds = AXES.iter().enumerate();
+        let winds = winds.map(|(i, axis)| series(*axis, &trace.time, &trace.wind[i], i));
+        panels.push(panel("Wind", "velocity (m/s)", winds.collect()));
+    }
+    let title = &scenario.title;
+    let figure = Figure {
+        title: format!("{title}: what disturbs"),
+        description: "True force of each disturbance along each world axis, and the wind.".into(),
+        panels,
+    };
+    Drawing { name: "sources", svg: figure.svg() }
+}
+
+/// How wrong the laws are told.
+fn sensing(scenario: &Scenario, trace: &Trace) -> Drawing {
+    let errors = AXES.iter().enumerate();
+    let errors = errors.map(|(i, axis)| series(*axis, &trace.time, &trace.told[i], i));
+    let figure = Figure {
+        title: format!("{}: what the filter believes", scenario.title),
+        description: "Estimated less true position along each world axis.".into(),
+        panels: vec![panel("Estimated less true position", "error (m)", errors.collect())],
+    };
+    Drawing { name: "sensing", svg: figure.svg() }
+}
+
 /// Thrust and torques that act.
 pub fn commands(title: &str, trace: &Trace) -> Drawing {
     let torques = AXES
@@ -135,6 +177,12 @@ pub fn all(scenario: &Scenario, trace: &Trace) -> Vec<Drawing> {
         disturbance(title, trace),
         commands(title, trace),
     ];
+    if !scenario.disturbance.is_empty() {
+        drawings.push(sources(scenario, trace));
+    }
+    if !scenario.sensor.is_empty() {
+        drawings.push(sensing(scenario, trace));
+    }
     if scenario.has_rotors() {
         let vehicle = &scenario.vehicle.vehicle;
         drawings.push(rotors(title, trace, (vehicle.rotor_speed_min, vehicle.rotor_speed_max)));

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use stormpetrel_control::real::Real;
 use stormpetrel_plant::dispatch::Width;
+use stormpetrel_plant::disturbance::MOST;
+use stormpetrel_plant::dynamics::Push;
 use stormpetrel_plant::flight::{Cause, Tick};
 
 use crate::batch::fly_alike;
@@ -53,25 +55,48 @@ pub(crate) fn failure(cause: f64, flown: f64, dt: f64) -> Option<Failure> {
     Cause::from_code(cause).map(|cause| Failure { time: flown * dt, cause })
 }
 
+/// One tick of a flight and what belongs to it.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    /// The tick.
+    pub tick: &'a Tick<f64>,
+    /// How far it is from where it should be.
+    pub errors: &'a Errors<f64>,
+    /// True force (N, world) and torque (N m, body) of each disturbance, in the order of the scenario.
+    pub sources: &'a [Push<f64>],
+}
+
 /// Flies one scenario; `each` sees every tick with its errors.
 pub fn fly(scenario: &Scenario, mut each: impl FnMut(&Tick<f64>, &Errors<f64>)) -> Outcome {
-    fly_seen(scenario, &mut each)
+    fly_seen(scenario, false, &mut |seen| each(seen.tick, seen.errors))
+}
+
+/// [`fly`], where each disturbance is told apart: for logs and figures.
+pub fn fly_told_apart(scenario: &Scenario, mut each: impl FnMut(&Seen<'_>)) -> Outcome {
+    fly_seen(scenario, true, &mut each)
 }
 
 /// The whole loop is inlined here: once for all callers, not once for each.
-fn fly_seen(scenario: &Scenario, each: &mut dyn FnMut(&Tick<f64>, &Errors<f64>)) -> Outcome {
+fn fly_seen(scenario: &Scenario, apart: bool, each: &mut dyn FnMut(&Seen<'_>)) -> Outcome {
     let mut flight = scenario.flight();
     let mut distribution = Distribution::new(scenario.has_attitude());
     let setting = setting(scenario);
     let mut sums = Sums::new();
+    let mut sources = [Push::default(); MOST];
+    let told = if apart { scenario.disturbance.len() } else { 0 };
     for _ in 0..scenario.ticks() {
         if flight.alive == 0.0 {
             break;
         }
+        let before = apart.then_some(flight.disturbance);
         let tick = flight.decide();
+        if let Some(before) = before {
+            sources = flight.attributed(before);
+        }
         let errors = sums.push(&tick, &setting, flight.alive);
         distribution.push(&errors);
-        each(&tick, &errors);
+        let sources = sources.get(..told).unwrap_or_default();
+        each(&Seen { tick: &tick, errors: &errors, sources });
         flight.advance(&tick);
     }
     Outcome {

@@ -52,7 +52,7 @@ pub fn variants_json(variants: &[&str]) -> Value {
 
 /// `manifest.json`: everything needed to fly it again and to read the log.
 pub fn manifest_json(scenario: &Scenario) -> Value {
-    let columns: Vec<_> = columns()
+    let columns: Vec<_> = columns(scenario.disturbance.len())
         .into_iter()
         .map(|c| json!({ "name": c.name, "unit": c.unit, "frame": c.frame, "meaning": c.doc }))
         .collect();

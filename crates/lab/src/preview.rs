@@ -1,5 +1,7 @@
 //! A scenario drawn without flying: where it leads, and what that asks of the vehicle.
 
+mod plan;
+
 use std::fmt::Write;
 
 use stormpetrel_control::math::{Frame, Vec3};
@@ -24,8 +26,12 @@ pub fn drawings(scenario: &Scenario) -> Vec<Drawing> {
     if scenario.has_rotors() {
         all.push(rotors(scenario, &demands));
     }
-    // Other blocks that act by time alone, disturbances and sensors, add their figures here:
-    // `all.extend(disturbance(scenario))`, each under a name of its own in `output::own`.
+    if !scenario.disturbance.is_empty() {
+        all.push(plan::disturbance(scenario));
+    }
+    if !scenario.sensor.is_empty() {
+        all.push(plan::sensors(scenario));
+    }
     all
 }
 

@@ -1,9 +1,8 @@
 //! The course of a flight, thinned for figures.
 
 use stormpetrel_control::math::{Frame, Vec3};
-use stormpetrel_plant::flight::Tick;
 
-use crate::metric::Errors;
+use crate::fly::Seen;
 
 /// Three components over time.
 pub type Axes = [Vec<f64>; 3];
@@ -33,6 +32,12 @@ pub struct Trace {
     pub torque: Axes,
     /// Speed of each rotor, rad/s.
     pub rotor_speed: [Vec<f64>; 4],
+    /// True force of each disturbance, N.
+    pub sources: Vec<Axes>,
+    /// Velocity of the air, m/s.
+    pub wind: Axes,
+    /// Position that the laws are told less the true one, m.
+    pub told: Axes,
     /// First peak of the position error: time (s) and height (m).
     pub first_peak: Option<(f64, f64)>,
     last_error: f64,
@@ -57,7 +62,8 @@ impl Trace {
     }
 
     /// Takes a tick.
-    pub fn push(&mut self, tick: &Tick<f64>, errors: &Errors<f64>) {
+    pub fn push(&mut self, seen: &Seen<'_>) {
+        let Seen { tick, errors, sources } = *seen;
         if self.first_peak.is_none() && errors.position < self.last_error && self.last_error > PEAK
         {
             self.first_peak = Some((tick.time, self.last_error));
@@ -73,6 +79,12 @@ impl Trace {
             push(&mut self.estimate, tick.estimate.force);
             self.thrust.push(tick.applied.thrust);
             push(&mut self.torque, tick.applied.torque);
+            push(&mut self.wind, tick.air.wind);
+            push(&mut self.told, tick.estimate.position - tick.position);
+            self.sources.resize(sources.len(), Axes::default());
+            for (axes, source) in self.sources.iter_mut().zip(sources) {
+                push(axes, source.force);
+            }
             for (speeds, w) in self.rotor_speed.iter_mut().zip(tick.rotor_speed) {
                 speeds.push(w);
             }

@@ -18,7 +18,11 @@ use super::refused::refuse;
 const FILES: [&str; 5] =
     ["flight.csv", "metrics.json", "manifest.json", "report.html", "preview.html"];
 /// Figures, as SVG and PNG.
-const FIGURES: [&str; 9] = [
+const FIGURES: [&str; 13] = [
+    "sources",
+    "sensing",
+    "preview-disturbance",
+    "preview-sensors",
     "path",
     "errors",
     "disturbance",

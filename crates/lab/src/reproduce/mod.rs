@@ -8,7 +8,7 @@ mod tables;
 pub use html::{HEADLINES, html};
 pub use tables::{Table, row, tables};
 
-use crate::fly::{Outcome, fly, on_all_cores};
+use crate::fly::{Outcome, fly_told_apart, on_all_cores};
 use crate::scenario::Scenario;
 use crate::scenario::expect::Expectation;
 use crate::scenario::fault::Faults;
@@ -128,7 +128,7 @@ pub fn reproduce(done: impl Fn(usize) + Sync + Send) -> Result<Story, Faults> {
     let total = scenarios.len() + plan.len();
     let flown = on_all_cores(&scenarios, |scenario| {
         let mut trace = Trace::new(scenario.ticks(), POINTS);
-        let outcome = fly(scenario, |tick, errors| trace.push(tick, errors));
+        let outcome = fly_told_apart(scenario, |seen| trace.push(seen));
         done(total);
         (outcome, trace)
     });

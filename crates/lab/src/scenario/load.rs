@@ -8,15 +8,12 @@ use stormpetrel_control::record::{Meta, Path as Name, Record};
 use stormpetrel_control::registry::Settings;
 use stormpetrel_plant::disturbance::MOST;
 
+use super::document::{Entry, Node, Table, Value, missing_items, not_to_set, parse, parse_set};
+use super::fault::{Fault, Faults, Place, Source};
+use super::read::{Reader, unknown, wrong_type};
+use super::{ATTITUDE_LEVELS, BlockVisitor, Scenario, expect, expectations, whole};
 use crate::campaign::{plan, sweep};
 use crate::curve;
-use crate::metric::{names, of_attitude};
-
-use super::document::{Entry, Node, Table, Value, missing_items, not_to_set, parse, parse_set};
-use super::expect::Rule;
-use super::fault::{Fault, Faults, Place, Source};
-use super::read::{Reader, scientific, unknown, wrong_type};
-use super::{ATTITUDE_LEVELS, BlockVisitor, Scenario, expect};
 
 /// A scenario file: one flight, or several variants of one.
 #[derive(Clone, Debug)]
@@ -29,18 +26,8 @@ pub struct File {
     pub scenarios: Vec<Scenario>,
 }
 
-/// Most control ticks of one flight.
-const MOST_TICKS: f64 = 1e8;
-/// Most integration steps of one flight: some minutes.
-const MOST_STEPS: f64 = 1e9;
 /// Most variants of a file.
 const MOST_VARIANTS: usize = 1000;
-/// Most rows of one log.
-const MOST_ROWS: f64 = 5e6;
-/// Most rows of the logs of one command.
-const MOST_ROWS_OF_ALL: f64 = 2e7;
-/// Bytes of a row of the log, about.
-const ROW: f64 = 800.0;
 /// Faults after which no further variant is read.
 const ENOUGH: usize = 1000;
 
@@ -53,82 +40,8 @@ pub fn load(path: &Path, sets: &[String]) -> Result<File, Faults> {
     load_text(&name, &shown, text, sets)
 }
 
-/// One flight of a file as a tree, to be flown with other settings again and again.
-#[derive(Clone, Debug)]
-pub struct Base {
-    name: String,
-    variant: Option<String>,
-    tree: Table,
-    source: Arc<Source>,
-}
-
-impl Base {
-    /// Reads a file with its `--set` arguments, and the variant if it has several.
-    ///
-    /// # Errors
-    /// Everything that is wrong with the file; a variant that is missing or unknown.
-    pub fn load(path: &Path, sets: &[String], variant: Option<&str>) -> Result<Self, Faults> {
-        let (name, shown, text) = read_text(path)?;
-        load_text(&name, &shown, text.clone(), sets)?;
-        let (base, source) = parse(&shown, text)?;
-        let mut faults = Vec::new();
-        let variants = variants(&base, &mut faults);
-        Faults(faults).check()?;
-        let Some(chosen) = variants.iter().find(|v| v.name == variant) else {
-            let known: Vec<&str> = variants.iter().filter_map(|v| v.name).collect();
-            let (message, help) = match variant {
-                _ if known.is_empty() => {
-                    (format!("{shown}: the file has no variants"), "leave out --variant".into())
-                }
-                Some(name) => {
-                    (format!("unknown variant `{name}`"), format!("known: {}", known.join(", ")))
-                }
-                None => (
-                    format!("{shown}: the file has {} variants", known.len()),
-                    format!("choose one with --variant: {}", known.join(", ")),
-                ),
-            };
-            return Err(Fault::general(message).help(help).into());
-        };
-        let mut tree = Table(base.0.iter().filter(|e| e.key != "variant").cloned().collect());
-        if let Some(set) = chosen.set {
-            tree.overlay(set);
-        }
-        for set in sets {
-            tree.overlay(&parse_set(set)?);
-        }
-        let variant = chosen.name.map(str::to_owned);
-        let name = chosen.name.map_or_else(|| name.clone(), |v| format!("{name}:{v}"));
-        Ok(Self { name, variant, tree, source })
-    }
-
-    /// The block of this name, as the file has it.
-    pub fn block(&self, key: &str) -> Option<&Node> {
-        self.tree.get(key)
-    }
-
-    /// The flight with these `--set` arguments laid over it.
-    ///
-    /// # Errors
-    /// Everything that is wrong with them.
-    pub fn scenario(&self, sets: &[String]) -> Result<Scenario, Faults> {
-        let mut tree = self.tree.clone();
-        let mut faults = Vec::new();
-        for set in sets {
-            let set = parse_set(set)?;
-            missing_items(&tree, &set, "", &mut faults);
-            tree.overlay(&set);
-        }
-        Faults(faults).check()?;
-        let read = read_scenario(self.name.clone(), &tree, &self.source, &Variant::default());
-        let mut scenario = read.map_err(Faults)?;
-        scenario.variant.clone_from(&self.variant);
-        Ok(scenario)
-    }
-}
-
 /// Name of the scenario, the file as messages name it, its text.
-fn read_text(path: &Path) -> Result<(String, String, String), Faults> {
+pub(super) fn read_text(path: &Path) -> Result<(String, String, String), Faults> {
     let shown = path.display().to_string();
     let text = super::source::read(path, &shown)?;
     let name = path.with_extension("").display().to_string();
@@ -183,14 +96,18 @@ pub fn load_text(name: &str, shown: &str, text: String, sets: &[String]) -> Resu
 
 /// A row of `[[variant]]`.
 #[derive(Default)]
-struct Variant<'a> {
-    name: Option<&'a str>,
-    title: Option<&'a str>,
-    set: Option<&'a Table>,
-    expect: Option<&'a Table>,
+pub(super) struct Variant<'a> {
+    /// Its name.
+    pub name: Option<&'a str>,
+    /// Its one line.
+    pub title: Option<&'a str>,
+    /// What it changes.
+    pub set: Option<&'a Table>,
+    /// What it must show beside the rest.
+    pub expect: Option<&'a Table>,
 }
 
-fn variants<'a>(base: &'a Table, faults: &mut Vec<Fault>) -> Vec<Variant<'a>> {
+pub(super) fn variants<'a>(base: &'a Table, faults: &mut Vec<Fault>) -> Vec<Variant<'a>> {
     const KEYS: [&str; 4] = ["name", "title", "set", "expect"];
     let Some(node) = base.get("variant") else { return vec![Variant::default()] };
     let Value::List(items) = &node.value else {
@@ -266,7 +183,7 @@ fn is_name(text: &str) -> bool {
         && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_')
 }
 
-fn read_scenario(
+pub(super) fn read_scenario(
     name: String,
     tree: &Table,
     source: &Arc<Source>,
@@ -310,8 +227,8 @@ fn read_scenario(
     if let Some(table) = variant.expect {
         expect::read(table, "", &mut scenario.expect, &mut faults);
     }
-    check_metrics(&scenario, &broken, &mut faults);
-    check_whole(&scenario, tree, &broken, &mut faults);
+    expectations::check(&scenario, &broken, &mut faults);
+    whole::check(&scenario, tree, &broken, &mut faults);
     if faults.is_empty() { Ok(scenario) } else { Err(faults) }
 }
 
@@ -331,145 +248,6 @@ fn plan_faults(entry: &Entry, faults: &mut Vec<Fault>) {
         sweep::read(&entry.node, faults);
     } else {
         plan::settings(&entry.node, faults);
-    }
-}
-
-/// Every expectation must name a metric that the flight has.
-fn check_metrics(scenario: &Scenario, broken: &[&str], faults: &mut Vec<Fault>) {
-    let mut known = names();
-    if !scenario.has_attitude() && !broken.contains(&"actuation") {
-        known.retain(|name| !of_attitude(name));
-    }
-    let known: Vec<&str> = known.iter().map(String::as_str).collect();
-    for expectation in &scenario.expect {
-        let name = expectation.metric.as_str();
-        if !known.contains(&name) {
-            faults.push(unknown(&expectation.place, "metric", name, name, &known));
-        } else if !broken.contains(&"run") {
-            faults.extend(impossible(expectation, scenario));
-        }
-    }
-}
-
-/// What is wrong with an expectation that no flight can meet.
-fn impossible(expectation: &expect::Expectation, scenario: &Scenario) -> Option<Fault> {
-    let (name, run) = (expectation.metric.as_str(), &scenario.run);
-    let fault = |message: String| Fault::new(&expectation.place, message);
-    if name.ends_with(".late_max") && run.late >= run.duration {
-        let (late, duration) = (scientific(run.late), scientific(run.duration));
-        let message =
-            format!("`expect.{name}`: no sample after run.late = {late} s in {duration} s");
-        return Some(fault(message).help("lower run.late or raise run.duration"));
-    }
-    let (least, most) = bounds(name, run.duration);
-    if expectation.possible(least, most) {
-        return None;
-    }
-    let bound = match expectation.rule {
-        Rule::Min(_) => format!("never more than {}", scientific(most)),
-        Rule::Max(_) => format!("never less than {}", scientific(least)),
-        Rule::Within { .. } => {
-            format!("never outside {} to {}", scientific(least), scientific(most))
-        }
-    };
-    let message =
-        format!("`expect.{name}` must be {}: the metric is {bound}", expectation.describe());
-    Some(fault(message).help("no flight can meet it: correct the number"))
-}
-
-/// Least and greatest value that a metric can have.
-fn bounds(name: &str, duration: f64) -> (f64, f64) {
-    match name {
-        "estimate.lag" => (f64::NEG_INFINITY, f64::INFINITY),
-        "saturation.share" => (0.0, 1.0),
-        "time.flown" | "tilt.inverted_at" => (0.0, duration),
-        _ => (0.0, f64::INFINITY),
-    }
-}
-
-/// Why these flights cannot be logged.
-pub fn too_long(scenarios: &[Scenario]) -> Option<Fault> {
-    let rows = |scenario: &Scenario| scenario.ticks() as f64 / scenario.run.log_every;
-    let fault = |who: &str, rows: f64, most: f64, help: &str| {
-        let size = rows * ROW / 1e9;
-        let message =
-            format!("{who} would have {rows:.1e} rows, about {size:.0} GB: at most {most:e}");
-        Some(Fault::general(message).help(help))
-    };
-    if let Some(long) = scenarios.iter().find(|scenario| rows(scenario) > MOST_ROWS) {
-        let who = format!("{}: the log", long.name);
-        return fault(&who, rows(long), MOST_ROWS, "raise run.log_every");
-    }
-    let sum: f64 = scenarios.iter().map(rows).sum();
-    if sum <= MOST_ROWS_OF_ALL {
-        return None;
-    }
-    let who = format!("the logs of {} flights", scenarios.len());
-    fault(&who, sum, MOST_ROWS_OF_ALL, "raise run.log_every, or fly fewer variants at once")
-}
-
-/// Rules that look at more than one field.
-fn check_whole(scenario: &Scenario, tree: &Table, broken: &[&str], faults: &mut Vec<Fault>) {
-    let place = |block: &str| tree.get(block).map(|node| node.place.clone());
-    // A block with a fault of its own has defaults in it: nothing can be said about the whole.
-    let mut say = |block: &str, message: String, help: &str| {
-        if broken.contains(&block) {
-            return;
-        }
-        faults.push(Fault { place: place(block), message, help: Some(help.to_owned()) });
-    };
-    if !scenario.has_attitude() && !broken.contains(&"actuation") {
-        for block in ATTITUDE_LEVELS.into_iter().filter(|block| tree.get(block).is_some()) {
-            let message = format!("`{block}` is never asked: actuation is `thrust-vector`");
-            say(block, message, "take the block out, or choose another actuation");
-        }
-    }
-    let run = &scenario.run;
-    let ticks = run.duration / run.control_step;
-    if ticks > MOST_TICKS {
-        let message =
-            format!("`run`: {ticks:.3e} control steps: a flight has at most {MOST_TICKS:e}");
-        say("run", message, "shorten run.duration or lengthen run.control_step");
-    } else if (ticks - ticks.round()).abs() > 1e-6 * ticks || ticks < 1.0 {
-        let message = format!(
-            "`run.duration` = {} is not a multiple of `run.control_step` = {}",
-            run.duration, run.control_step
-        );
-        say("run", message, "a flight is a whole number of control steps");
-    }
-    let steps = ticks * run.substeps;
-    if steps > MOST_STEPS && ticks <= MOST_TICKS {
-        let message = format!(
-            "`run`: {steps:.1e} integration steps, about {:.0} min: a flight has at most {MOST_STEPS:e}",
-            steps / 2e6 / 60.0
-        );
-        say(
-            "run",
-            message,
-            "lower run.substeps, shorten run.duration or lengthen run.control_step",
-        );
-    }
-    let inertia = scenario.vehicle.vehicle.inertia;
-    for (a, b, c) in [
-        (inertia.x, inertia.y, inertia.z),
-        (inertia.y, inertia.z, inertia.x),
-        (inertia.z, inertia.x, inertia.y),
-    ] {
-        if a > (b + c) * (1.0 + 1e-12) {
-            let message = format!(
-                "`vehicle.inertia` = [{}, {}, {}]: one moment exceeds the sum of the others",
-                inertia.x, inertia.y, inertia.z
-            );
-            say("vehicle", message, "no rigid body has such moments: check their order and units");
-        }
-    }
-    let vehicle = &scenario.vehicle.vehicle;
-    if vehicle.rotor_speed_min >= vehicle.rotor_speed_max {
-        let message = format!(
-            "`vehicle.rotor_speed_min` = {} is not below `vehicle.rotor_speed_max` = {}",
-            vehicle.rotor_speed_min, vehicle.rotor_speed_max
-        );
-        say("vehicle", message, "are the two swapped?");
     }
 }
 

@@ -1,7 +1,9 @@
 //! A scenario: one line for each block of the control diagram.
 
+mod base;
 pub mod document;
 pub mod expect;
+mod expectations;
 pub mod fault;
 mod load;
 pub mod read;
@@ -9,11 +11,13 @@ mod resolve;
 mod rows;
 mod schema;
 mod source;
+mod whole;
 
 use stormpetrel_control::attitude::AttitudeLawSettings;
 use stormpetrel_control::attitude_reference::{
     AttitudeReferenceSettings, attitude_along, flatness_rates,
 };
+use stormpetrel_control::estimator::{Eskf, eskf};
 use stormpetrel_control::math::{Euler, Rotation, Vec3, World};
 use stormpetrel_control::observer::ObserverSettings;
 use stormpetrel_control::options::Options;
@@ -29,12 +33,15 @@ use stormpetrel_plant::disturbance::{Site, SourceSettings};
 use stormpetrel_plant::flight::{Flight, Limits};
 use stormpetrel_plant::random;
 use stormpetrel_plant::reference::{Refer, ReferenceSettings};
+use stormpetrel_plant::sensor::SensorSettings;
 use stormpetrel_plant::state::State;
 use stormpetrel_plant::timing::{Delays, Timing};
 use stormpetrel_plant::vehicle::VehicleSettings;
 
-pub use load::{Base, File, load, load_text, too_long};
+pub use base::Base;
+pub use load::{File, load, load_text};
 pub use schema::schema;
+pub use whole::too_long;
 
 record! {
     /// Times and counts of a flight.
@@ -156,6 +163,10 @@ pub struct Scenario {
     pub rate: RateLawSettings,
     /// Between laws and body.
     pub actuation: ActuationSettings,
+    /// What the laws see through; perfect where there is none.
+    pub sensor: Vec<SensorSettings>,
+    /// What the filter believes of the sensors.
+    pub estimator: eskf::Gains<f64>,
     /// How often each level acts.
     pub rates: Rates<f64>,
     /// When commands reach the rotors.
@@ -213,6 +224,13 @@ impl Scenario {
         v.block("attitude", "Attitude law.", &mut self.attitude);
         v.block("rate", "Rate law.", &mut self.rate);
         v.block("actuation", "Between laws and body.", &mut self.actuation);
+        v.list("sensor", "What the laws see through; the truth without any.", &mut self.sensor);
+        v.plain(
+            "estimator",
+            "What the error-state Kalman filter believes of the sensors.",
+            &mut self.estimator,
+            &mut (),
+        );
         v.plain("rates", "How often each level acts.", &mut self.rates, &mut ());
         v.plain("timing", "When commands reach the rotors.", &mut self.timing, &mut ());
         v.list("disturbance", "What pushes the vehicle.", &mut self.disturbance);
@@ -242,7 +260,7 @@ impl Scenario {
 
     /// Whether real rotors with limits fly it.
     pub fn has_rotors(&self) -> bool {
-        matches!(self.actuation, ActuationSettings::Rotors(..))
+        matches!(self.actuation, ActuationSettings::Rotors(..) | ActuationSettings::Propulsion(..))
     }
 
     /// Key of all random draws of the flight.
@@ -277,6 +295,12 @@ impl Scenario {
         };
         let site = Site { vehicle, step: self.run.control_step, key: self.key() };
         flight.timing = Timing::new(self.timing, site.at("timing", 0).key);
+        flight.sensing.estimate = !self.sensor.is_empty();
+        flight.sensing.filter = Eskf::new(self.estimator, &model);
+        for (channel, sensor) in flight.sensing.channels.iter_mut().zip(&self.sensor) {
+            *channel = sensor.build(&vehicle).into();
+        }
+        flight.sensing.seed(site.at("sensor", 0).key);
         for (i, slot) in flight.disturbance.iter_mut().take(self.disturbance.len()).enumerate() {
             let kind = self.disturbance[i].name();
             let twins = self.disturbance[..i].iter().filter(|other| other.name() == kind).count();

@@ -34,6 +34,8 @@ impl Scenario {
             attitude: first(),
             rate: first(),
             actuation: first(),
+            sensor: Vec::new(),
+            estimator: Default::default(),
             rates: Default::default(),
             timing: Default::default(),
             disturbance: Vec::new(),

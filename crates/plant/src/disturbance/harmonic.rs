@@ -52,12 +52,20 @@ impl<T: Real> Harmonic<T> {
     }
 }
 
+impl<T: Real> Harmonic<T> {
+    /// The push `time` seconds after the onset on a vehicle of this mass (kg).
+    #[inline(always)]
+    pub fn at(&self, time: T, mass: T) -> Push<T> {
+        let Gains { force, torque, acceleration, offset, sine, cosine, frequency } = self.gains;
+        let (sin, cos) = (frequency * time).sin_cos();
+        let h = offset + sine * sin + cosine * cos; // (1)
+        Push { force: (force + acceleration * mass) * h, torque: torque * h } // (2)
+    }
+}
+
 impl<T: Real> Disturb<T> for Harmonic<T> {
     #[inline(always)]
     fn push(&mut self, scene: &Scene<T>) -> Push<T> {
-        let Gains { force, torque, acceleration, offset, sine, cosine, frequency } = self.gains;
-        let (sin, cos) = (frequency * scene.time).sin_cos();
-        let h = offset + sine * sin + cosine * cos; // (1)
-        Push { force: (force + acceleration * scene.mass) * h, torque: torque * h } // (2)
+        self.at(scene.time, scene.mass)
     }
 }

@@ -8,7 +8,7 @@
 use stormpetrel_control::math::{Vec3, World};
 use stormpetrel_control::real::{Mask as _, Real};
 use stormpetrel_control::record;
-use stormpetrel_control::record::{Meta, Path, Record as _};
+use stormpetrel_control::record::{Meta, Path, Record as _, RecordExt as _};
 use stormpetrel_control::registry::{Settings, SettingsVisitor};
 
 use super::{
@@ -64,6 +64,22 @@ impl<T: Real> Source<T> {
             force: Vec3::select(on, force, Vec3::zero()),
             torque: Vec3::select(on, torque, Vec3::zero()),
         }
+    }
+
+    /// [`Source::push`] of a harmonic one, which knows the time (s) and the mass (kg) only: the one that a
+    /// plain flight asks in its loop.
+    #[inline(always)]
+    pub fn harmonic(&self, time: T, mass: T) -> Option<Push<T>> {
+        let Disturbance::Harmonic(all) = &self.what else { return None };
+        let mut push = Push::default();
+        for i in 0..T::LANES {
+            let (time, window) = (time.lane(i), self.window.pick(i));
+            let Push { force, torque } = all.pick(i).at(time - window.start, mass.lane(i));
+            let on = window.start.le(time) & time.lt(window.end);
+            let force = Vec3::select(on, force, Vec3::zero());
+            Push { force, torque: Vec3::select(on, torque, Vec3::zero()) }.put(&mut push, i);
+        }
+        Some(push)
     }
 
     /// Velocity of the air, m/s.

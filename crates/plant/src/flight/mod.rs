@@ -13,6 +13,7 @@ use crate::actuation::{Actuate, Actuation};
 use crate::disturbance::{MOST, Source};
 use crate::dynamics::{Held, Push, Reciprocals, acceleration};
 use crate::reference::{Refer, Reference};
+use crate::sensor::Sensing;
 use crate::sling::Hanging;
 use crate::state::State;
 use crate::timing::Timing;
@@ -78,10 +79,18 @@ record! {
 }
 
 record! {
-    /// What the observer believes at one tick.
+    /// What observer and sensors make the laws believe at one tick.
     pub struct Estimated {
         /// Its estimate of the lumped disturbance, `m d_hat`.
         force: Vec3<T, World> [N];
+        /// Position that the laws are told.
+        position: Vec3<T, World> [m];
+        /// Velocity that the laws are told.
+        velocity: Vec3<T, World> [m/s];
+        /// Attitude that the laws are told.
+        attitude: Rotation<T, Body, World> [1];
+        /// Angular velocity that the laws are told.
+        rate: Vec3<T, Body> [rad/s];
     }
 }
 
@@ -138,6 +147,8 @@ record! {
         disturbance: [Source<T>; MOST] [];
         /// When commands reach the rotors.
         timing: Timing<T> [];
+        /// Sensors and filter.
+        sensing: Sensing<T> [];
         /// When the flight counts as failed.
         limits: Limits<T> [];
         /// Time between two commands.
@@ -194,9 +205,14 @@ impl Flight<f64> {
         self.actuation.reset();
         self.timing.reset(self.model.mass, self.model.gravity);
         self.unallocated = Wrench::default();
+        self.conditions = Conditions::new(&self.per, &Push::default());
         (self.alive, self.cause, self.flown) = (1.0, 0.0, 0.0);
         self.tick = 0;
         self.stack.reset(&self.measure());
+        if self.sensing.estimate {
+            let truth = self.truth();
+            self.sensing.begin(&truth);
+        }
     }
 }
 
@@ -208,6 +224,12 @@ impl<T: Real> Flight<T> {
         let achieved = Wrench { thrust: thrust * self.belief, torque: torque * self.belief };
         let State { position, velocity, attitude, rate, .. } = self.state;
         Measurement { position, velocity, attitude, rate, achieved, unallocated: self.unallocated }
+    }
+
+    /// What the laws are told: the truth, or what sensors and filter make of it.
+    #[inline(always)]
+    fn measurement(&mut self) -> Measurement<T> {
+        if self.sensing.estimate { self.sense() } else { self.measure() }
     }
 
     /// Ticks since the start.
@@ -237,53 +259,45 @@ impl<T: Real> Flight<T> {
             self.prepare(around);
         }
         let estimate = self.stack.estimate() * self.model.mass;
-        let command = self.command(&reference);
+        let told = self.measurement();
+        let command = self.command(&told, &reference);
         self.unallocated = self.actuation.command(&command, &self.vehicle);
         if self.cares.propulsion {
             self.actuation.suffer(&around.rotors, &self.state, self.control_step);
         }
         self.thrust_per_mass = self.actuation.thrust_per_mass(&self.state, &self.vehicle);
-        let mut tick = self.tick_of(&reference, &command, &around, estimate);
-        if self.cares.any() {
+        let wind = around.wind;
+        let (applied, air, lumped, cargo) = if self.cares.any() {
             let seen = self.look();
-            tick.applied = seen.rotors;
-            (tick.air.force, tick.air.torque) = (seen.air.force, seen.air.torque);
-            tick.disturbance.lumped = self.unexplained(seen.slope.body.velocity);
-            tick.cargo = self.hanging.place;
+            let Push { force, torque } = seen.air;
+            let lumped = self.unexplained(seen.slope.body.velocity);
+            (seen.rotors, Air { wind, force, torque }, lumped, self.hanging.place)
         } else {
-            tick.disturbance.lumped = self.lumped(&around.push);
-        }
-        tick
-    }
-
-    /// What a plain flight shows at this tick, without the lumped disturbance.
-    #[inline(always)]
-    fn tick_of(
-        &self,
-        reference: &Trajectory<T>,
-        command: &Command<T>,
-        around: &Surroundings<T>,
-        estimate: Vec3<T, World>,
-    ) -> Tick<T> {
+            let still = Air { wind, ..Air::default() };
+            (self.actuation.wrench(&self.state), still, self.lumped(&around.push), Vec3::zero())
+        };
         let State { position, velocity, attitude, rate, rotor_speed } = self.state;
+        let Push { force, torque } = around.push;
         Tick {
-            time: self.time(),
+            time,
             position,
             velocity,
             attitude,
             rate,
             rotor_speed,
-            reference: *reference,
-            command: *command,
-            applied: self.actuation.wrench(&self.state),
-            disturbance: Disturbed {
-                force: around.push.force,
-                torque: around.push.torque,
-                lumped: Vec3::zero(),
+            reference,
+            command,
+            applied,
+            disturbance: Disturbed { force, torque, lumped },
+            air,
+            cargo,
+            estimate: Estimated {
+                force: estimate,
+                position: told.position,
+                velocity: told.velocity,
+                attitude: told.attitude,
+                rate: told.rate,
             },
-            air: Air { wind: around.wind, ..Air::default() },
-            cargo: Vec3::zero(),
-            estimate: Estimated { force: estimate },
             saturation: self.actuation.saturation(),
             flags: self.stack.flags(),
         }
@@ -291,10 +305,10 @@ impl<T: Real> Flight<T> {
 
     /// What the laws decide, and what of it reaches the rotors at this tick.
     #[inline(always)]
-    fn command(&mut self, reference: &Trajectory<T>) -> Command<T> {
-        let (measurement, dt) = (self.measure(), self.control_step);
+    fn command(&mut self, told: &Measurement<T>, reference: &Trajectory<T>) -> Command<T> {
+        let dt = self.control_step;
         let before = if self.timing.late { Some(self.stack) } else { None };
-        let mut command = self.stack.update(&measurement, reference, dt);
+        let mut command = self.stack.update(told, reference, dt);
         if let Some(before) = before {
             command = self.delay(before, command);
         }

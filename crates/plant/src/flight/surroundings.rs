@@ -3,6 +3,7 @@
 use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
+use stormpetrel_control::signals::Measurement;
 
 use super::Flight;
 use crate::actuation::Actuation;
@@ -10,6 +11,7 @@ use crate::aerodynamics::drag;
 use crate::dispatch::{Work, wide};
 use crate::disturbance::{Cargo, Disturbance, MOST, Reach, RotorFaults, Scene, Source};
 use crate::dynamics::{Push, Reciprocals};
+use crate::sensor::{Sensing, Truth};
 use crate::sling::{Hanging, Sling};
 use crate::vehicle::Vehicle;
 use crate::world::{Conditions, Scenery, Seen, Whole, look};
@@ -55,13 +57,17 @@ pub struct Cares {
     pub propulsion: bool,
     /// Some disturbance is not harmonic.
     pub more: bool,
+    /// Disturbances there are, those without effect before the last included.
+    pub sources: usize,
+    /// The laws see through sensors.
+    pub sensing: bool,
 }
 
 impl Cares {
     /// Whether the whole world is needed: more than pushes.
     #[inline(always)]
     pub fn any(self) -> bool {
-        self.air || self.laden || self.sling || self.propulsion
+        self.air || self.laden || self.sling || self.propulsion || self.sensing
     }
 }
 
@@ -75,6 +81,12 @@ impl Flight<f64> {
             laden: touches(Reach::Cargo) || center.norm_squared() > 0.0,
             sling: touches(Reach::Sling),
             propulsion: matches!(self.actuation, Actuation::Propulsion(_)),
+            sensing: self.sensing.estimate,
+            sources: self
+                .disturbance
+                .iter()
+                .rposition(|source| source.reach() != Reach::Nothing)
+                .map_or(0, |last| last + 1),
             more: self.disturbance.iter().any(|source| {
                 !matches!(source.what, Disturbance::Calm(_) | Disturbance::Harmonic(_))
             }),
@@ -98,14 +110,15 @@ impl<T: Real> Flight<T> {
     /// Asks every disturbance. The plainest one is asked in the loop itself.
     #[inline(always)]
     pub(super) fn surroundings(&mut self) -> Surroundings<T> {
-        let scene = self.scene();
         let mut all = Surroundings { rotors: RotorFaults::none(), ..Surroundings::default() };
-        for source in &mut self.disturbance {
-            if let Disturbance::Harmonic(_) = source.what {
-                all.push.add(&source.push(&scene));
+        let (time, mass) = (self.time(), self.vehicle.mass);
+        for source in self.disturbance.iter().take(self.cares.sources) {
+            if let Some(push) = source.harmonic(time, mass) {
+                all.push.add(&push);
             }
         }
         if self.cares.more {
+            let scene = self.scene();
             all = survey(&mut self.disturbance, scene, all);
         }
         all
@@ -158,6 +171,26 @@ impl<T: Real> Flight<T> {
         look(&whole, Scenery { vehicle, actuation, conditions: &self.conditions })
     }
 
+    /// What there is to be sensed now.
+    pub(super) fn truth(&self) -> Truth<T> {
+        let Measurement { achieved, unallocated, .. } = self.measure();
+        let weightless = self.acceleration() + Vec3::up(self.vehicle.gravity);
+        let specific_force = self.state.attitude.inverse() * weightless;
+        Truth { state: self.state, specific_force, achieved, unallocated }
+    }
+
+    /// What sensors and filter make of the truth.
+    #[inline(never)]
+    pub(super) fn sense(&mut self) -> Measurement<T> {
+        let (truth, tick, step) = (self.truth(), self.ticks(), self.control_step);
+        let sensing = &mut self.sensing;
+        let mut told = wide::<T, _>(Senses { sensing, truth, tick, step });
+        if self.sensing.has_telemetry() {
+            told.achieved = self.sensing.achieved(&self.vehicle);
+        }
+        told
+    }
+
     /// True acceleration, m/s^2.
     pub fn acceleration(&self) -> Vec3<T, World> {
         self.look().slope.body.velocity
@@ -208,6 +241,22 @@ impl<T: Real> Flight<T> {
             };
         }
         pushes
+    }
+}
+
+/// Sensors and filter, on the widest registers.
+struct Senses<'a, T: Real> {
+    sensing: &'a mut Sensing<T>,
+    truth: Truth<T>,
+    tick: T,
+    step: T,
+}
+
+impl<T: Real> Work for Senses<'_, T> {
+    type Output = Measurement<T>;
+    #[inline(always)]
+    fn run(self) -> Measurement<T> {
+        self.sensing.measure(&self.truth, self.tick, self.step)
     }
 }
 
