@@ -27,6 +27,8 @@ cargo xtask <task>
   symbols      is the control stack on a microcontroller free of panics and heap?
   hash         do native, lanes and WASM give the bits in scenarios/experiment.hash? (`hash --write`)
   bench        measure and write docs/benchmarks.md
+  abuse        campaigns killed, starved and damaged: the figures of docs/reliability.md
+  soak         a day of simulated hover in turbulence: the figures of docs/reliability.md
 ";
 
 fn main() -> ExitCode {
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
         ["symbols"] => symbols::check(),
         ["bench"] => bench::bench(),
         ["abuse"] => abuse(),
+        ["soak"] => soak(),
         ["schema"] => schema::check(),
         ["schema", "--write"] => schema::write(),
         _ => {
@@ -87,6 +90,22 @@ fn abuse() -> Result<(), String> {
         "--nocapture",
     ];
     Step::cargo("campaigns under abuse", &arguments).run()
+}
+
+/// A day of simulated hover.
+fn soak() -> Result<(), String> {
+    let arguments = [
+        "test",
+        "--release",
+        "-p",
+        "stormpetrel-lab",
+        "--test",
+        "soak",
+        "--",
+        "--ignored",
+        "--nocapture",
+    ];
+    Step::cargo("a day in the wind", &arguments).run()
 }
 
 fn lint() -> Result<(), String> {

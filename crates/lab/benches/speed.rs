@@ -7,6 +7,7 @@ use stormpetrel_control::attitude::AttitudeLawSettings;
 use stormpetrel_control::attitude_reference::AttitudeReferenceSettings;
 use stormpetrel_control::controller::{Controller, Guarded, GuardedObserver};
 use stormpetrel_control::lanes::Lanes;
+use stormpetrel_control::math::Vec3;
 use stormpetrel_control::observer::ObserverSettings;
 use stormpetrel_control::position::PositionSettings;
 use stormpetrel_control::rate::RateLawSettings;
@@ -17,9 +18,13 @@ use stormpetrel_control::signals::{Applied, Measurement, Model};
 use stormpetrel_lab::fly::{LANES, fly, fly_batch_at};
 use stormpetrel_lab::scenario::Scenario;
 use stormpetrel_lab::shipped::shipped;
+use stormpetrel_plant::actuation::ActuationSettings;
+use stormpetrel_plant::actuation::propulsion::Supply;
 use stormpetrel_plant::dispatch::{Width, Work};
+use stormpetrel_plant::disturbance::SourceSettings;
 use stormpetrel_plant::dynamics::{Held, Push};
 use stormpetrel_plant::flight::Flight;
+use stormpetrel_plant::sensor::SensorSettings;
 
 const TICKS: u64 = 20_000;
 
@@ -40,6 +45,18 @@ impl<T: Real> Work for Steps<'_, T> {
         }
         flight.state.position.x
     }
+}
+
+/// [`Steps`] of one vehicle; compiled once.
+#[inline(never)]
+fn alone(flight: &Flight<f64>, ticks: u64) -> f64 {
+    Steps { flight, ticks }.run()
+}
+
+/// [`Steps`] of eight vehicles at this width; compiled once for each.
+#[inline(never)]
+fn eight(width: Width, flight: &Flight<Eight>, ticks: u64) -> Eight {
+    width.run(Steps { flight, ticks })
 }
 
 /// Nanoseconds for one of `count` items, the best of five runs.
@@ -124,7 +141,7 @@ fn closed_loop(name: &str) {
     let one = scenario(name);
     let flight = one.flight();
     let single = best(TICKS, || {
-        black_box(Steps { flight: &flight, ticks: TICKS }.run());
+        black_box(alone(&flight, TICKS));
     });
     let with_metrics = best(TICKS, || {
         black_box(fly(&one, |_, _| {}));
@@ -136,7 +153,7 @@ fn closed_loop(name: &str) {
     let gathered: Flight<Lanes<f64, LANES>> = RecordExt::<f64>::gather([&flight; LANES]);
     for width in Width::available() {
         let lanes = best(TICKS * LANES as u64, || {
-            black_box(width.run(Steps { flight: &gathered, ticks: TICKS }));
+            black_box(eight(width, &gathered, TICKS));
         });
         let measured = best(TICKS * LANES as u64, || {
             black_box(fly_batch_at(&batch, width));
@@ -155,7 +172,7 @@ fn closed_loop(name: &str) {
     ));
 }
 
-/// Integration steps of the body alone: Runge-Kutta, rotor lag, no drag yet.
+/// Integration steps of the body alone: Runge-Kutta and rotor lag, without drag.
 struct Plant<T> {
     flight: Flight<T>,
     steps: u64,
@@ -218,7 +235,7 @@ fn throughput() {
         black_box(Plant { flight, steps: TICKS }.run());
     });
     let closed = best(TICKS, || {
-        black_box(Steps { flight: &flight, ticks: TICKS }.run());
+        black_box(alone(&flight, TICKS));
     });
     row("single", plant, closed);
     let lanes = |width: Width| {
@@ -226,7 +243,7 @@ fn throughput() {
             black_box(width.run(Plant { flight: gathered, steps: TICKS }));
         });
         let closed = best(TICKS * LANES as u64, || {
-            black_box(width.run(Steps { flight: &gathered, ticks: TICKS }));
+            black_box(eight(width, &gathered, TICKS));
         });
         (plant, closed)
     };
@@ -247,7 +264,7 @@ fn throughput() {
         black_box(widest.run(Plant { flight: gathered, steps: TICKS }));
     });
     let closed = on_all(&|| {
-        black_box(widest.run(Steps { flight: &gathered, ticks: TICKS }));
+        black_box(eight(widest, &gathered, TICKS));
     });
     row(&format!("eight lanes, {}, {threads} threads", widest.name()), plant, closed);
     say(
@@ -262,7 +279,104 @@ fn throughput() {
     }
 }
 
+/// A block of the world that is switched on.
+type Switch = (&'static str, fn(&mut Scenario));
+
+fn disturbed(scenario: &mut Scenario, kind: &str) {
+    scenario.disturbance.extend(SourceSettings::named(kind));
+}
+
+fn seeing(scenario: &mut Scenario, kinds: &[&str]) {
+    scenario.sensor.extend(kinds.iter().filter_map(|kind| SensorSettings::named(kind)));
+}
+
+fn dragging(scenario: &mut Scenario) {
+    let vehicle = &mut scenario.vehicle.vehicle;
+    (vehicle.rotor_drag, vehicle.body_drag) = (Vec3::splat(0.05), 0.01);
+    (vehicle.rotor_radius, vehicle.inflow_loss, vehicle.flapping) = (0.05, 1e-6, 1e-7);
+    vehicle.rotor_inertia = 1e-6;
+}
+
+fn propelled(scenario: &mut Scenario) {
+    if let Some(kind) = ActuationSettings::named("propulsion") {
+        scenario.actuation = kind;
+    }
+    if let ActuationSettings::Propulsion(_, options) = &mut scenario.actuation {
+        options.supply = Supply::Battery;
+    }
+}
+
+/// Everything but the filter.
+fn everything(scenario: &mut Scenario) {
+    dragging(scenario);
+    propelled(scenario);
+    for kind in ["dryden", "noise", "jet", "gust", "payload", "slung-mass", "rotor-efficiency"] {
+        disturbed(scenario, kind);
+    }
+    scenario.timing.computation_delay = 0.002;
+}
+
+const BLOCKS: [Switch; 12] = [
+    ("nothing", |_| {}),
+    ("drag of body and rotors", |s| dragging(s)),
+    ("propulsion with battery", |s| propelled(s)),
+    ("`noise`", |s| disturbed(s, "noise")),
+    ("drag and `jet`", |s| {
+        dragging(s);
+        disturbed(s, "jet");
+    }),
+    ("drag and `dryden`", |s| {
+        dragging(s);
+        disturbed(s, "dryden");
+    }),
+    ("`payload`", |s| disturbed(s, "payload")),
+    ("`slung-mass`", |s| disturbed(s, "slung-mass")),
+    ("delay of two ticks", |s| s.timing.computation_delay = 0.002),
+    ("filter: gyro, accelerometer, GNSS, magnetometer, barometer", |s| {
+        seeing(s, &["gyro", "accelerometer", "gnss", "magnetometer", "barometer"]);
+    }),
+    ("the whole world without the filter", everything),
+    ("the whole world with the filter", |s| {
+        everything(s);
+        seeing(s, &["gyro", "accelerometer", "gnss", "magnetometer", "barometer"]);
+    }),
+];
+
+/// What each block of the world adds to the closed loop on rotors.
+fn world() {
+    let plain = scenario("article/rotors:rate-commanded");
+    let widest = Width::widest();
+    say(&format!(
+        "\n## The world\n\nns per closed-loop step of one vehicle, `article/rotors:rate-commanded` with this block switched on.\n\n\
+         | block | single | against nothing | eight lanes, {} | against nothing |\n|---|---|---|---|---|",
+        widest.name()
+    ));
+    let mut nothing = None;
+    for (name, switch) in BLOCKS {
+        let mut one = plain.clone();
+        switch(&mut one);
+        let flight = one.flight();
+        let gathered: Box<Flight<Eight>> = Box::new(RecordExt::<f64>::gather([&flight; LANES]));
+        let ticks = TICKS / 4;
+        let single = best(ticks, || {
+            black_box(alone(&flight, ticks));
+        });
+        let lanes = best(ticks * LANES as u64, || {
+            black_box(eight(widest, &gathered, ticks));
+        });
+        let (one, eight) = *nothing.get_or_insert((single, lanes));
+        say(&format!(
+            "| {name} | {single:.0} | {:.1} times | {lanes:.0} | {:.1} times |",
+            single / one,
+            lanes / eight
+        ));
+    }
+}
+
 fn main() {
+    if std::env::args().any(|argument| argument == "world") {
+        return world();
+    }
     say("## Laws and closed loop\n");
     laws();
     for name in [
@@ -273,4 +387,5 @@ fn main() {
         closed_loop(name);
     }
     throughput();
+    world();
 }

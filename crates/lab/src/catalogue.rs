@@ -2,10 +2,12 @@
 
 use std::fmt::Write;
 
+use stormpetrel_control::math::Vec3;
 use stormpetrel_control::options::{Cells, OptionVisitor, Options, Shape};
+use stormpetrel_control::real::Real;
 use stormpetrel_control::record::{Meta, Path, Record, VisitorMut};
 use stormpetrel_control::registry::Settings;
-use stormpetrel_plant::vehicle::VehicleSettings;
+use stormpetrel_plant::vehicle::{Vehicle, VehicleSettings};
 
 use crate::metric::{About, OF_FLIGHT, OF_SIGNALS, SIGNALS};
 use crate::scenario::{BlockVisitor, Scenario};
@@ -170,13 +172,12 @@ impl Collector {
             }
             let mut text = module_doc(S::SOURCES.get(i).copied().unwrap_or_default());
             if kind == "vehicle" {
-                text = format!(
-                    "{}\n\n{ROTORS}",
-                    VehicleSettings::DOCS.get(i).copied().unwrap_or_default()
-                );
+                let doc = VehicleSettings::DOCS.get(i).copied().unwrap_or_default();
+                let made = VehicleSettings::named(name).map(|settings| rotors(&settings.vehicle));
+                text = format!("{doc}\n\n{}", made.unwrap_or_default());
             }
             if *name == "rotors" {
-                text = format!("{text}\n{ROTORS}");
+                text = format!("{text}\n{}", rotors(&Vehicle::default()));
             }
             let summary = text.lines().next().unwrap_or_default().trim_end_matches('.').to_owned();
             let Block { choices, tables, numbers } = block;
@@ -228,20 +229,60 @@ impl BlockVisitor for Collector {
     }
 }
 
-/// The rotors of layout `article-plus`, seen from above.
-const ROTORS: &str = "\
-Rotors, layout article-plus, seen from above:
+/// Rows and columns of the drawing of a layout.
+const DRAWING: (usize, usize) = (7, 37);
 
-               x forward
-                  |
-               1 (ccw)
-                  |
-  y left  4 (cw)--+--2 (cw)
-                  |
-               3 (ccw)
-
-  T     = k (w1^2 + w2^2 + w3^2 + w4^2)
-  tau_x = l k (-w2^2 + w4^2)
-  tau_y = l k (-w1^2 + w3^2)
-  tau_z = c (-w1^2 + w2^2 - w3^2 + w4^2)
-";
+/// The rotors seen from above, x forward (up) and y left, and the wrench that they make.
+fn rotors(vehicle: &Vehicle<f64>) -> String {
+    let mounts = vehicle.mounts();
+    let reach = mounts.iter().fold(1e-9, |most, mount| {
+        let Vec3 { x, y, .. } = mount.place;
+        Real::max(most, Real::max(Real::abs(x), Real::abs(y)))
+    });
+    let (rows, columns) = DRAWING;
+    let mut grid = vec![vec![' '; columns]; rows];
+    let mut write = |x: f64, y: f64, text: &str| {
+        let middle = |count: usize| (count as f64 - 1.0) / 2.0;
+        let row = Real::round(middle(rows) * (1.0 - x / reach));
+        let column = Real::round(middle(columns) - y / reach * 12.0);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // inside the grid
+        let (row, column) = (row as usize, (column as usize).saturating_sub(text.len() / 2));
+        for (cell, letter) in
+            grid.iter_mut().nth(row).into_iter().flatten().skip(column).zip(text.chars())
+        {
+            *cell = letter;
+        }
+    };
+    write(0.0, 0.0, "+");
+    for (i, mount) in mounts.iter().enumerate() {
+        let spin = if mount.spin > 0.0 { "ccw" } else { "cw" };
+        write(mount.place.x, mount.place.y, &format!("{} ({spin})", i + 1));
+    }
+    let drawn: Vec<String> =
+        grid.iter().map(|row| format!("  {}", row.iter().collect::<String>().trim_end())).collect();
+    let places: Vec<String> = mounts
+        .iter()
+        .enumerate()
+        .map(|(i, m)| {
+            format!(
+                "  rotor {}  x {:+.3} m  y {:+.3} m  spin {:+}",
+                i + 1,
+                m.place.x,
+                m.place.y,
+                m.spin
+            )
+        })
+        .collect();
+    let equations = [
+        "  T_i   = k w_i^2,  T = T_1 + T_2 + T_3 + T_4",
+        "  tau_x = sum y_i T_i",
+        "  tau_y = -sum x_i T_i",
+        "  tau_z = -sum spin_i c w_i^2",
+    ];
+    format!(
+        "Rotors seen from above, x forward (up), y left:\n\n{}\n\n{}\n\n{}\n",
+        drawn.join("\n"),
+        places.join("\n"),
+        equations.join("\n")
+    )
+}

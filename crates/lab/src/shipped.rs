@@ -29,6 +29,10 @@ shipped![
     "references/minimum-snap",
     "references/race",
     "references/table",
+    "world/fan",
+    "world/payload-drop",
+    "world/lost-rotor",
+    "world/gnss-dropout",
 ];
 
 /// Name and text of every table that a shipped scenario names.

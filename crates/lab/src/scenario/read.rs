@@ -256,7 +256,7 @@ pub fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
 pub fn unknown(place: &Place, what: &str, shown: &str, name: &str, known: &[&str]) -> Fault {
     let nearest = nearest(name, known);
     // A long list of names hides the one that is meant.
-    let list = if known.len() > 20 {
+    let list = if known.len() > 24 {
         "`stormpetrel list` shows all names".to_owned()
     } else {
         format!("known: {}", known.join(", "))
