@@ -1,6 +1,6 @@
 //! Campaigns as a user runs, interrupts and kills them.
 #![cfg(unix)]
-#![allow(clippy::expect_used, clippy::print_stdout)]
+#![allow(clippy::expect_used, clippy::print_stdout)] // a test fails by panicking, and prints its figures
 
 use std::fs;
 use std::path::{Path, PathBuf};

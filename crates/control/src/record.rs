@@ -400,17 +400,17 @@ macro_rules! record {
             type With<U: $crate::real::Real> = $name<U>;
 
             #[inline(always)]
-            #[allow(unused_variables)]
+            #[allow(unused_variables)] // a record without such numbers uses none
             fn visit(&self, path: &$crate::record::Path<'_>, _: &$crate::record::Meta, v: &mut impl $crate::record::Visitor<T>) {
                 $( $crate::record::Record::visit(&self.$f, &path.join(stringify!($f)), &$crate::record!(@meta [$($unit)*] [$($doc)+] $($lo, $hi)?), v); )*
             }
             #[inline(always)]
-            #[allow(unused_variables)]
+            #[allow(unused_variables)] // a record without such numbers uses none
             fn visit_mut(&mut self, path: &$crate::record::Path<'_>, _: &$crate::record::Meta, v: &mut impl $crate::record::VisitorMut<T>) {
                 $( $crate::record::Record::visit_mut(&mut self.$f, &path.join(stringify!($f)), &$crate::record!(@meta [$($unit)*] [$($doc)+] $($lo, $hi)?), v); )*
             }
             #[inline(always)]
-            #[allow(unused_variables)]
+            #[allow(unused_variables)] // a record without such numbers uses none
             fn zip<const M: usize, U: $crate::real::Real>(rows: [&Self; M], f: &mut impl FnMut([T; M]) -> U) -> $name<U> {
                 $name {
                     $( $f: $crate::record::Record::zip($crate::record::each(rows, |row| &row.$f), f), )*
@@ -418,7 +418,7 @@ macro_rules! record {
                 }
             }
             #[inline(always)]
-            #[allow(unused_variables)]
+            #[allow(unused_variables)] // a record without such numbers uses none
             fn pick_lane(&self, i: usize) -> $name<T::Scalar> {
                 $name {
                     $( $f: $crate::record::Record::pick_lane(&self.$f, i), )*
@@ -426,12 +426,12 @@ macro_rules! record {
                 }
             }
             #[inline(always)]
-            #[allow(unused_variables)]
+            #[allow(unused_variables)] // a record without such numbers uses none
             fn put_mapped<U: $crate::real::Real<Scalar = T>>(&self, batch: &mut $name<U>, i: usize, f: &mut impl FnMut(T) -> T) {
                 $( $crate::record::Record::put_mapped(&self.$f, &mut batch.$f, i, f); )*
             }
             #[inline(always)]
-            #[allow(unused_variables)]
+            #[allow(unused_variables)] // a record without such numbers uses none
             fn each_variable(&self, f: &mut impl FnMut(T)) {
                 $( $crate::record!(@variable (&self.$f) f $($default)?); )*
             }

@@ -43,10 +43,47 @@ fn flights() -> Vec<Scenario> {
     (0..30).map(one).collect()
 }
 
+/// Flights through the whole world, with loops of their own rates, onsets and seeds of their own.
+fn worldly() -> Vec<Scenario> {
+    let one = |i: u32| {
+        let x = f64::from(i);
+        scenario(&[
+            "vehicle={ model = \"hummingbird\" }".to_owned(),
+            "actuation={ kind = \"propulsion\", supply = \"battery\" }".to_owned(),
+            format!(
+                "disturbance=[{{ kind = \"dryden\", mean = [4, {x}, 0] }}, {{ kind = \"payload\", mass = 0.1, \
+                 start = {}, end = {} }}, {{ kind = \"slung-mass\", start = {} }}]",
+                0.02 * x,
+                0.05 + 0.03 * x,
+                0.01 * x
+            ),
+            "sensor=[{ kind = \"gyro\" }, { kind = \"accelerometer\" }, { kind = \"gnss\", dropout = 0.2 }, \
+             { kind = \"magnetometer\" }]"
+                .to_owned(),
+            "rates={ position_every = 7, attitude_every = 2 }".to_owned(),
+            format!("timing={{ computation_delay = {}, dropped = 0.05 }}", 0.001 * f64::from(i % 3)),
+            format!("run.duration={}", 0.1 * f64::from(1 + i % 4)),
+            format!("run.seed={i}"),
+        ])
+    };
+    (0..12).map(one).collect()
+}
+
 fn bits(outcome: &Outcome) -> Vec<(String, u64)> {
     let failure = outcome.failure.map_or(-1.0, |failure| failure.time);
     let named = outcome.metrics.iter().map(|(name, value)| (name.clone(), value.to_bits()));
     named.chain([("failure".to_owned(), failure.to_bits())]).collect()
+}
+
+#[test]
+fn a_flight_through_the_world_has_the_same_bits_in_any_lane() {
+    let flights = worldly();
+    let alone: Vec<Outcome> = flights.iter().map(|scenario| fly(scenario, |_, _| {})).collect();
+    let together = fly_batch_at(&flights, Width::widest());
+    for (i, (a, b)) in alone.iter().zip(&together).enumerate() {
+        assert_eq!(bits(a), bits(b), "flight {i}");
+    }
+    assert_ne!(bits(&alone[0]), bits(&alone[4]), "each has a wind of its own");
 }
 
 #[test]

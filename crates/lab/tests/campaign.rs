@@ -1,7 +1,7 @@
 //! Nothing lost, nothing twice, nothing silently wrong: campaigns stopped, broken, damaged and split.
 //!
 //! Short here; the tests marked `ignore` are the long versions that `cargo xtask abuse` runs.
-#![allow(clippy::expect_used, clippy::print_stdout)]
+#![allow(clippy::expect_used, clippy::print_stdout)] // a test fails by panicking, and prints its figures
 
 use std::fs;
 use std::io::{self, Write};
