@@ -247,8 +247,7 @@ fn rotors(vehicle: &Vehicle<f64>) -> String {
         let column = Real::round(middle(columns) - y / reach * 12.0);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // inside the grid
         let (row, column) = (row as usize, (column as usize).saturating_sub(text.len() / 2));
-        for (cell, letter) in
-            grid.iter_mut().nth(row).into_iter().flatten().skip(column).zip(text.chars())
+        for (cell, letter) in grid.get_mut(row).into_iter().flatten().skip(column).zip(text.chars())
         {
             *cell = letter;
         }

@@ -1,5 +1,6 @@
 //! A day in the wind: `cargo xtask soak`. Its figures stand in `docs/reliability.md`.
-#![allow(clippy::expect_used, clippy::print_stdout)] // a test that is read
+// A test that is read, with the standard library's arithmetic.
+#![allow(clippy::pedantic, clippy::disallowed_methods, clippy::expect_used, clippy::print_stdout)]
 
 use stormpetrel_lab::fly::fly;
 use stormpetrel_lab::scenario::load_text;

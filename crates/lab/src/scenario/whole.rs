@@ -162,7 +162,7 @@ impl Judge<'_> {
             self.say_at("vehicle", Some(place), message, "write layout = \"free\" beside it");
             return;
         }
-        let spins = (0..rows.len()).all(|i| rows.cell(i, 3).abs() == 1.0);
+        let spins = (0..rows.len()).all(|i| [-1.0, 1.0].contains(&rows.cell(i, 3)));
         if free && (rows.len() != 4 || !spins) {
             let message = format!(
                 "`vehicle.rotors` has {} rows: a free layout has four, each with a spin of 1 or -1",
@@ -204,8 +204,8 @@ impl Judge<'_> {
     fn disturbances(&mut self) {
         let vehicle = &self.scenario.vehicle.vehicle;
         let rotors = matches!(self.scenario.actuation, ActuationSettings::Propulsion(..));
-        let airless =
-            !vehicle.feels_air() && !(rotors && vehicle.inflow_loss + vehicle.flapping > 0.0);
+        let blown = rotors && vehicle.inflow_loss + vehicle.flapping > 0.0;
+        let airless = !(vehicle.feels_air() || blown);
         let (actuation, mut hanging) = (self.actuation(), 0);
         for (i, SourceSettings { window, what }) in self.scenario.disturbance.iter().enumerate() {
             let (kind, place) = (what.name(), self.item("disturbance", i));

@@ -177,13 +177,6 @@ impl<T: Real> Propulsion<T> {
         look_up_lanes(&self.curve, speed)
     }
 
-    /// More thrust near the ground (6).
-    #[inline(always)]
-    fn cushion(&self, height: T, radius: T) -> T {
-        let ratio = radius / (T::lit(4.0) * height.max(radius.half()).max(T::lit(1e-9)));
-        T::one() / (T::one() - ratio.sq())
-    }
-
     /// Thrusts that the laws expect at these speeds.
     #[inline(always)]
     fn expected(&self, state: &State<T>) -> [T; 4] {
@@ -265,7 +258,7 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
             let [still, drag] = self.rotor(speed);
             let flow = through + omega.cross(place - around.shift);
             let height = state.position.z + (state.attitude * place).z - self.ground;
-            let gain = self.health[i] * self.cushion(height, vehicle.rotor_radius);
+            let gain = self.health[i] * cushion(height, vehicle.rotor_radius);
             let lift = gain * (still - vehicle.inflow_loss * speed * flow.z); // (3)
             let rate = T::select(T::zero().lt(self.rising[i]), rise, fall);
             let spin_up = (self.commanded[i] - speed) * rate; // (2)
@@ -313,4 +306,11 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
 #[inline(always)]
 fn dot<T: Real>(a: [T; 4], b: [T; 4]) -> T {
     a[0] * b[0] + a[1] * b[1] + (a[2] * b[2] + a[3] * b[3])
+}
+
+/// More thrust near the ground (6).
+#[inline(always)]
+fn cushion<T: Real>(height: T, radius: T) -> T {
+    let ratio = radius / (T::lit(4.0) * height.max(radius.half()).max(T::lit(1e-9)));
+    T::one() / (T::one() - ratio.sq())
 }

@@ -21,7 +21,7 @@ record! {
 
 columns! {
     /// Force in world axes and torque in body axes, by time from the onset.
-    pub struct ForceRows, 1 => 1000000 rows, first grows {
+    pub struct ForceRows, 1 => 1_000_000 rows, first grows {
         t [s] in 0.0 => 1e6;
         fx [N] in -1e6 => 1e6;
         fy [N] in -1e6 => 1e6;

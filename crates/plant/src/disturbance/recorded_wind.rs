@@ -20,7 +20,7 @@ record! {
 
 columns! {
     /// Velocity of the air in world axes, by time from the onset.
-    pub struct WindRows, 1 => 1000000 rows, first grows {
+    pub struct WindRows, 1 => 1_000_000 rows, first grows {
         t [s] in 0.0 => 1e6;
         x [m/s] in -100.0 => 100.0;
         y [m/s] in -100.0 => 100.0;

@@ -46,6 +46,7 @@ record! {
 
 /// What a flight has to look after beside pushes; equal in all lanes of a batch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(clippy::struct_excessive_bools)] // each asks for another part of the world
 pub struct Cares {
     /// The air acts on the body or on the rotors.
     pub air: bool,
