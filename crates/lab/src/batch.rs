@@ -20,6 +20,29 @@ type Wide = Lanes<f64, LANES>;
 /// Flies scenarios of one structure; outcomes in their order. Without `attitude` only the metrics of
 /// the position are taken.
 pub fn fly_alike(scenarios: &[&Scenario], width: Width, attitude: bool) -> Vec<Outcome> {
+    deep(|| fly_together(scenarios, width, attitude))
+}
+
+/// Does the work where there is room: without optimisation every function keeps copies of eight flights,
+/// more than the stack of a thread holds.
+#[cfg(all(debug_assertions, not(target_family = "wasm")))]
+fn deep<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    const STACK: usize = 256 << 20;
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
+        #[allow(clippy::expect_used)] // development builds only
+        let thread = thread.expect("a thread for eight flights");
+        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
+/// Does the work.
+#[cfg(not(all(debug_assertions, not(target_family = "wasm"))))]
+fn deep<R>(work: impl FnOnce() -> R) -> R {
+    work()
+}
+
+fn fly_together(scenarios: &[&Scenario], width: Width, attitude: bool) -> Vec<Outcome> {
     let mut outcomes = vec![None; scenarios.len()];
     let mut waiting: VecDeque<usize> = (0..scenarios.len()).collect();
     let Some(first) = scenarios.first() else { return Vec::new() };

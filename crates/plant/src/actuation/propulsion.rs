@@ -241,7 +241,9 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
     #[inline(always)]
     fn pass(&mut self, h: T) {
         if !self.step.eq(h).all() {
-            (self.step, self.half_decays) = (h, each(self.lags, |lag| (-h.half() / lag).exp()));
+            let [up, down] = self.lags;
+            let half = -h.half();
+            (self.step, self.half_decays) = (h, [(half / up).exp(), (half / down).exp()]);
         }
     }
     #[inline(always)]

@@ -85,6 +85,12 @@ fn sum<T: Real>([a, b, c, d]: [T; 4]) -> T {
     a + b + (c + d)
 }
 
+/// Sum of products, in pairs.
+#[inline(always)]
+fn dot<T: Real>(a: [T; 4], b: [T; 4]) -> T {
+    sum([a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]])
+}
+
 /// The squares of the rotor speeds, rad^2/s^2.
 #[inline(always)]
 fn squares<T: Real>(state: &State<T>) -> [T; 4] {
@@ -115,8 +121,8 @@ impl<T: Real> Actuate<T> for Rotors<T> {
     #[inline(always)]
     fn torque(&self, state: &State<T>) -> Vec3<T, Body> {
         let squares = squares(state);
-        let along = |axis: usize| sum(from_index(|i| self.arms[axis][i] * squares[i]));
-        Vec3::new(along(0), along(1), along(2)) // (3)
+        let [roll, pitch, yaw] = self.arms;
+        Vec3::new(dot(roll, squares), dot(pitch, squares), dot(yaw, squares)) // (3)
     }
     #[inline(always)]
     fn thrust(&self, state: &State<T>) -> T {

@@ -197,7 +197,8 @@ impl<T: Real> Disturb<T> for Dryden<T> {
     #[inline(always)]
     fn wind(&mut self, scene: &Scene<T>) -> Vec3<T, World> {
         let first = scene.tick.eq(T::zero());
-        let [a, b, c] = from_index(|pair| self.stream.normals(scene.tick, pair as u64));
+        let (tick, stream) = (scene.tick, &self.stream);
+        let (a, b, c) = (stream.normals(tick, 0), stream.normals(tick, 1), stream.normals(tick, 2));
         let u = self.u.step(c[0], first);
         let v = self.v.step(a, first);
         let w = self.w.step(b, first);

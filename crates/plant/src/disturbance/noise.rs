@@ -66,7 +66,8 @@ impl<T: Real> Disturb<T> for Noise<T> {
         let first = scene.tick.eq(T::zero());
         let (keep, fresh) =
             (T::select(first, T::zero(), self.keep), T::select(first, T::one(), self.fresh));
-        let [a, b, c] = from_index(|pair| self.stream.normals(scene.tick, pair as u64));
+        let (tick, stream) = (scene.tick, &self.stream);
+        let (a, b, c) = (stream.normals(tick, 0), stream.normals(tick, 1), stream.normals(tick, 2));
         let n = [a[0], a[1], b[0], b[1], c[0], c[1]];
         self.x = from_index(|i| self.x[i] * keep + n[i] * fresh); // (2)
         let [fx, fy, fz, tx, ty, tz] = self.x;
