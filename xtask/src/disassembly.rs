@@ -129,5 +129,5 @@ fn fused(code: &Code) -> Option<String> {
 
 fn allowed(name: &str) -> bool {
     let known = |known: &&str| name == *known || name.contains("::") && name.contains(known);
-    ALLOWED.iter().chain(&APART).any(|part| known(part))
+    ALLOWED.iter().chain(&APART).any(known)
 }
