@@ -61,7 +61,7 @@ fn golden_values_stand_in_the_files() {
 fn every_file_in_the_folder_is_shipped() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let mut found = BTreeSet::new();
-    for part in ["", "article/", "references/"] {
+    for part in ["", "article/", "references/", "world/"] {
         for entry in fs::read_dir(folder.join(part)).expect("the scenario folder") {
             let name = entry.expect("an entry").file_name().to_string_lossy().into_owned();
             if let Some(stem) = name.strip_suffix(".toml") {
