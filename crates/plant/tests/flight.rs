@@ -216,6 +216,7 @@ fn disturbances_add_up() {
     };
     let mut two = Scene { disturbance: half, ..scene }.flight();
     two.disturbance[3] = two.disturbance[0];
+    two.start(two.state); // a flight counts its disturbances when it starts
     let (a, b) = (one.decide().disturbance, two.decide().disturbance);
     // h(0) = 2: 1 N and 0.04 N m.
     assert_eq!(bits(&a), bits(&b));
