@@ -36,12 +36,13 @@ const ALLOWED: [&str; 11] = [
 ];
 
 /// Blocks with a boundary of their own, which a plain flight never calls: the whole world, sensors, delays.
-const APART: [&str; 7] = [
-    "flight::Flight<T>::delay",
+const APART: [&str; 8] = [
+    "flight::Flight<T>::drop_tick",
     "flight::Flight<T>>::prepare",
     "flight::Flight<T>>::sense",
     "flight::Flight<T>>::unexplained",
     "surroundings::survey",
+    "timing::Timing<T>::pass",
     "world::advance",
     "world::look",
 ];

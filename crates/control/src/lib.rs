@@ -24,6 +24,7 @@ pub mod attitude_reference;
 pub mod controller;
 pub mod estimator;
 pub mod filter;
+pub mod guard;
 pub mod lanes;
 pub mod math;
 pub mod observer;

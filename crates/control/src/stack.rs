@@ -2,7 +2,7 @@
 
 use crate::attitude::AttitudeLaw;
 use crate::attitude_reference::AttitudeReference;
-use crate::controller::{Guarded, GuardedObserver, finite, good_input};
+use crate::guard::{Guarded, GuardedObserver, finite, passing};
 use crate::math::{Vec3, World};
 use crate::observer::Observer;
 use crate::position::Position;
@@ -144,7 +144,7 @@ impl<T: Real> Stack<T> {
     ) -> Command<T> {
         let Rhythm { position: slow, attitude: middle, rate: fast } = self.every;
         let longer = |every: u32| if every == 1 { dt } else { dt * T::lit(f64::from(every)) };
-        let input = good_input(measurement, dt);
+        let input = passing(measurement, dt);
         let mut thrust = if self.due(slow) {
             let dt = longer(slow);
             self.observer.correct_checked(input, measurement, dt);

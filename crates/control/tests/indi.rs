@@ -6,7 +6,7 @@
 // source prints them.
 #![allow(clippy::pedantic, clippy::disallowed_methods, clippy::approx_constant, clippy::float_cmp)]
 
-use stormpetrel_control::controller::Guarded;
+use stormpetrel_control::guard::Guarded;
 use stormpetrel_control::math::Vec3;
 use stormpetrel_control::rate::indi::{Filter, Gains, Indi, Options};
 use stormpetrel_control::signals::{Measurement, Model, Rate, Wrench};

@@ -16,6 +16,7 @@
 use stormpetrel_control::math::{Vec3, World};
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
+use stormpetrel_control::record::RecordExt as _;
 use stormpetrel_control::signals::Wrench;
 use stormpetrel_control::stack::Command;
 
@@ -62,6 +63,8 @@ record! {
         structure {
             /// Whether anything is late or dropped.
             late: bool;
+            /// Whether ticks are dropped.
+            drops: bool;
         }
     }
 }
@@ -70,8 +73,9 @@ impl Timing<f64> {
     /// With these delays; the random stream comes from `key`.
     pub fn new(delays: Delays<f64>, key: u64) -> Self {
         let Delays { computation_delay, actuator_delay, jitter, dropped } = delays;
+        let (drops, stream) = (dropped > 0.0, Stream::new(key, "timing"));
         let late = computation_delay + actuator_delay + jitter + dropped > 0.0;
-        Self { delays, stream: Stream::new(key, "timing"), late, ..Self::default() }
+        Self { delays, stream, late, drops, ..Self::default() }
     }
 }
 
@@ -93,7 +97,7 @@ impl<T: Real> Timing<T> {
     }
 
     /// Sends `command` at the `slot`-th tick of the batch; gives what reaches the rotors now.
-    #[inline(always)]
+    #[inline(never)]
     pub fn pass(&mut self, command: &Command<T>, tick: T, slot: u64, dt: T) -> Command<T> {
         let at = |slot: u64| ((slot / 8 % 4) as usize, (slot % 8) as usize);
         let (row, column) = at(slot);
@@ -105,10 +109,13 @@ impl<T: Real> Timing<T> {
         let age = steps + (self.stream.unit(tick, 1) * room).floor(); // (1)
         self.age = age.min(self.age + T::one()).min(T::lit(LATEST as f64)); // (2)
         let mut acting = sent;
-        for back in 0..=LATEST as u64 {
+        // Each lane looks back as far as its own command is old.
+        for i in 0..T::LANES {
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            // a whole number from 0 to LATEST
+            let back = self.age.lane(i).to_f64() as u64;
             let (row, column) = at(slot.wrapping_sub(back));
-            let this = self.age.eq(T::lit(back as f64));
-            acting = record::blend(this, &self.ring[row][column], &acting);
+            self.ring[row][column].pick(i).put(&mut acting, i);
         }
         let mut late = *command;
         (late.thrust.force, late.wrench) = (acting.force, acting.wrench);

@@ -16,10 +16,10 @@
 use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
-use stormpetrel_control::record::Record as _;
+use stormpetrel_control::record::{Record as _, RecordExt as _};
 use stormpetrel_control::signals::Wrench;
 
-use crate::actuation::{Actuate as _, Actuation};
+use crate::actuation::{Actuate as _, Actuation, Load};
 use crate::aerodynamics::drag;
 use crate::dispatch::{Work, wide};
 use crate::dynamics::{
@@ -98,36 +98,69 @@ impl<T: Real> Scenery<'_, T> {
     /// The time derivative of the state, (1) and (2).
     #[inline(always)]
     pub fn slope(&self, whole: &Whole<T>) -> Slope<T> {
-        let Self { vehicle, actuation, conditions } = *self;
-        let (state, held) = (&whole.body, &conditions.held);
-        let load = actuation.load(state, vehicle, conditions);
-        let mut torque = load.torque + held.torque;
-        let mut thrust = load.thrust_per_mass;
+        self.under(
+            whole,
+            &self.actuation.load(&whole.body, self.vehicle, self.conditions),
+            &self.air(&whole.body),
+        )
+    }
+
+    /// The time derivative of the state under what rotors and air do. Lane by lane in each part: the loop
+    /// vectoriser takes a part as a whole.
+    #[inline(always)]
+    fn under(&self, whole: &Whole<T>, load: &Load<T>, air: &Push<T>) -> Slope<T> {
+        let Self { vehicle, conditions, .. } = *self;
+        let mut load = *load;
         if conditions.laden {
-            thrust = thrust * conditions.share;
-            let along = state.attitude.inverse() * (thrust * vehicle.mass);
-            torque -= conditions.shift.cross(along);
+            load = self.off_centre(&whole.body, &load);
         }
-        let mut a = acceleration(thrust, held.push_per_mass, vehicle.gravity);
-        if conditions.airy {
-            let air = drag(state, vehicle, conditions.wind);
-            a += air.force * conditions.per_mass;
-            torque += air.torque;
+        let mut body = Derivative::default();
+        for i in 0..T::LANES {
+            let (state, around) = (whole.body.pick(i), conditions.pick(i));
+            newton_euler(&state, &load.pick(i), &air.pick(i), &vehicle.pick(i), &around)
+                .put(&mut body, i);
         }
         let mut hanging = Hanging::default();
         if conditions.hangs {
-            let free = a + Vec3::up(vehicle.gravity);
-            let hung = hang(&whole.hanging, free, conditions.per_mass, &conditions.sling);
-            a += hung.pull; // (1)
-            hanging = Hanging { place: whole.hanging.velocity, velocity: hung.acceleration };
+            let mut pull = Vec3::zero();
+            for i in 0..T::LANES {
+                let (now, around) = (whole.hanging.pick(i), conditions.pick(i));
+                let free = body.velocity.pick(i) + Vec3::up(vehicle.gravity.lane(i));
+                let hung = hang(&now, free, around.per_mass, &around.sling);
+                hung.pull.put(&mut pull, i);
+                Hanging { place: now.velocity, velocity: hung.acceleration }.put(&mut hanging, i);
+            }
+            body.velocity += pull; // (1)
         }
-        let body = Derivative {
-            position: state.velocity,
-            velocity: a,
-            attitude: quaternion_rate(state),
-            rate: angular_acceleration(state, vehicle, held, torque), // (2)
-        };
         Slope { body, hanging }
+    }
+
+    /// What the air does to the body.
+    #[inline(always)]
+    fn air(&self, state: &State<T>) -> Push<T> {
+        let mut air = Push::default();
+        if self.conditions.airy {
+            for i in 0..T::LANES {
+                let (state, vehicle) = (state.pick(i), self.vehicle.pick(i));
+                drag(&state, &vehicle, self.conditions.wind.pick(i)).put(&mut air, i);
+            }
+        }
+        air
+    }
+
+    /// The rotors' thrust on a body whose centre of mass lies off their centre.
+    #[inline(always)]
+    fn off_centre(&self, state: &State<T>, load: &Load<T>) -> Load<T> {
+        let mut moved = Load::default();
+        for i in 0..T::LANES {
+            let (load, around) = (load.pick(i), self.conditions.pick(i));
+            let thrust_per_mass = load.thrust_per_mass * around.share;
+            let thrust = thrust_per_mass * self.vehicle.mass.lane(i);
+            let along = state.attitude.pick(i).inverse() * thrust;
+            Load { thrust_per_mass, torque: load.torque - around.shift.cross(along) }
+                .put(&mut moved, i);
+        }
+        moved
     }
 
     /// One Runge-Kutta step of `h` seconds; the actuation has let them pass.
@@ -145,8 +178,7 @@ impl<T: Real> Scenery<'_, T> {
         // A loop, so that the world is compiled once and not four times.
         for (stage, (ahead, speeds)) in ahead.into_iter().enumerate() {
             last = self.slope(&along(state, &last, ahead, speeds));
-            let weight = T::lit(weights[stage]);
-            sum = Slope::zip([&sum, &last], &mut |[sum, k]| sum + k * weight);
+            accumulate(&mut sum, &last, weights[stage]);
         }
         let mut next = along(state, &sum, h * T::lit(1.0 / 6.0), end);
         next.body.attitude = next.body.attitude.normalised();
@@ -157,16 +189,52 @@ impl<T: Real> Scenery<'_, T> {
     }
 }
 
+/// Adds a slope with its weight.
+#[inline(always)]
+fn accumulate<T: Real>(sum: &mut Slope<T>, slope: &Slope<T>, weight: f64) {
+    let weight = T::Scalar::lit(weight);
+    for i in 0..T::LANES {
+        let (so_far, one) = (sum.pick(i), slope.pick(i));
+        Slope::zip([&so_far, &one], &mut |[sum, k]| sum + k * weight).put(sum, i);
+    }
+}
+
 /// The state `h` seconds on along a constant slope, with these rotor speeds.
 #[inline(always)]
 fn along<T: Real>(state: &Whole<T>, slope: &Slope<T>, h: T, rotor_speed: [T; 4]) -> Whole<T> {
-    let Hanging { place, velocity } = state.hanging;
-    Whole {
-        body: state.body.along(&slope.body, h, rotor_speed),
-        hanging: Hanging {
-            place: place + slope.hanging.place * h,
-            velocity: velocity + slope.hanging.velocity * h,
-        },
+    let mut next = Whole::default();
+    for i in 0..T::LANES {
+        let (state, slope, h) = (state.pick(i), slope.pick(i), h.lane(i));
+        let Hanging { place, velocity } = state.hanging;
+        Whole {
+            body: state.body.along(&slope.body, h, rotor_speed.pick(i)),
+            hanging: Hanging {
+                place: place + slope.hanging.place * h,
+                velocity: velocity + slope.hanging.velocity * h,
+            },
+        }
+        .put(&mut next, i);
+    }
+    next
+}
+
+/// (1) and (2) without what hangs.
+#[inline(always)]
+fn newton_euler<T: Real>(
+    state: &State<T>,
+    load: &Load<T>,
+    air: &Push<T>,
+    vehicle: &Vehicle<T>,
+    conditions: &Conditions<T>,
+) -> Derivative<T> {
+    let held = &conditions.held;
+    let a = acceleration(load.thrust_per_mass, held.push_per_mass, vehicle.gravity);
+    let torque = load.torque + held.torque + air.torque;
+    Derivative {
+        position: state.velocity,
+        velocity: a + air.force * conditions.per_mass, // (1)
+        attitude: quaternion_rate(state),
+        rate: angular_acceleration(state, vehicle, held, torque), // (2)
     }
 }
 
@@ -230,16 +298,12 @@ impl<T: Real> Work for Looking<'_, T> {
     fn run(self) -> Seen<T> {
         let Self { state, scenery } = self;
         let Scenery { vehicle, actuation, conditions } = scenery;
-        let (slope, body) = (scenery.slope(&state), &state.body);
-        let load = actuation.load(body, vehicle, conditions);
+        let body = &state.body;
+        let (load, air) = (actuation.load(body, vehicle, conditions), scenery.air(body));
+        let slope = scenery.under(&state, &load, &air);
         let along = load.thrust_per_mass.dot(body.attitude.z_axis());
         let thrust = along * vehicle.mass * conditions.share;
-        let rotors = Wrench { thrust, torque: load.torque };
-        let mut air = Push::default();
-        if conditions.airy {
-            air = drag(body, vehicle, conditions.wind);
-        }
-        Seen { slope, rotors, air }
+        Seen { slope, rotors: Wrench { thrust, torque: load.torque }, air }
     }
 }
 

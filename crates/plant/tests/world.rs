@@ -270,7 +270,13 @@ fn a_cable_only_exchanges_momentum_and_keeps_energy() {
 
 /// A hover on the ideal wrench with one disturbance from 0.5 s on.
 fn hover_with(what: DisturbanceSettings, end: f64) -> Flight<f64> {
-    let scene = Scene { actuation: named("wrench"), reference: named("hover"), ..Scene::default() };
+    hover_on("wrench", what, end)
+}
+
+/// The same on an actuation of this kind.
+fn hover_on(actuation: &str, what: DisturbanceSettings, end: f64) -> Flight<f64> {
+    let actuation = named(actuation);
+    let scene = Scene { actuation, reference: named("hover"), ..Scene::default() };
     let mut flight = scene.calm().flight();
     let site = Site { vehicle: flight.vehicle, step: 1e-3, key: 1 };
     let window = Window { start: 0.5, end };
@@ -281,25 +287,28 @@ fn hover_with(what: DisturbanceSettings, end: f64) -> Flight<f64> {
 
 #[test]
 fn a_payload_weighs_what_it_weighs_and_leaves_no_trace() {
-    let gains = payload::Gains { mass: 0.125, place: Vec3::zero() };
-    let mut flight = hover_with(DisturbanceSettings::Payload(gains, ()), 1.0);
-    for tick in 0..1500 {
-        let before = flight.disturbance;
-        let decided = flight.decide();
-        let a = flight.acceleration();
-        let pushes = flight.attributed(before);
-        let attached = (500..1000).contains(&tick);
-        if tick == 500 {
-            // Thrust still carries m g: (m + mp) a = -mp g.
-            assert!((a.z + 9.8 * 0.125 / 0.75).abs() < 1e-12, "{a:?}");
+    for kind in ["wrench", "lagged-wrench", "rotors", "propulsion"] {
+        let gains = payload::Gains { mass: 0.125, place: Vec3::zero() };
+        let mut flight = hover_on(kind, DisturbanceSettings::Payload(gains, ()), 1.0);
+        for tick in 0..1500 {
+            let before = flight.disturbance;
+            let decided = flight.decide();
+            let a = flight.acceleration();
+            let pushes = flight.attributed(before);
+            let attached = (500..1000).contains(&tick);
+            if tick == 500 {
+                // Thrust still carries m g: (m + mp) a = -mp g.
+                assert!((a.z + 9.8 * 0.125 / 0.75).abs() < 1e-12, "{kind}: {a:?}");
+            }
+            let want = if attached { -(a.z + 9.8) * 0.125 } else { 0.0 };
+            assert!((pushes[1].force.z - want).abs() < 1e-12, "{kind}: tick {tick}");
+            // The lumped disturbance is what the law's model misses, whoever made it.
+            let missed = decided.disturbance.lumped - pushes[1].force;
+            assert!(missed.norm() < 1e-9, "{kind}: tick {tick}, {missed:?}");
+            flight.advance(&decided);
         }
-        let want = if attached { -(a.z + 9.8) * 0.125 } else { 0.0 };
-        assert!((pushes[1].force.z - want).abs() < 1e-12, "tick {tick}");
-        // The lumped disturbance is what the law's model misses, whoever made it.
-        assert!((decided.disturbance.lumped - pushes[1].force).norm() < 1e-9, "tick {tick}");
-        flight.advance(&decided);
+        assert!((flight.body().mass - 0.625).abs() < 1e-15);
     }
-    assert!((flight.body().mass - 0.625).abs() < 1e-15);
 }
 
 #[test]

@@ -25,7 +25,7 @@
 //! a term of second order. Valid while the attitude error is small (tenths of a radian) and a tick
 //! turns by less than 0.5 rad.
 
-use crate::controller::mended;
+use crate::guard::mended;
 use crate::math::{Body, Vec3};
 use crate::real::{Mask, Precision as _, Real};
 use crate::record;

@@ -76,6 +76,11 @@ impl<T: Real, F: Frame> Vec3<T, F> {
             self.x * other.y - self.y * other.x,
         )
     }
+    /// Vector product with `e_z`.
+    #[inline(always)]
+    pub fn cross_up(self) -> Self {
+        Self::new(self.y, -self.x, T::zero())
+    }
     /// Square of the Euclidean length.
     #[inline(always)]
     pub fn norm_squared(self) -> T {

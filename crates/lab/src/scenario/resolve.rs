@@ -66,13 +66,14 @@ impl Scenario {
         self.clone().blocks(&mut writer);
         let flight = self.flight();
         format!(
-            "{} ticks={} substeps={} every={:?} cares={:?} late={}",
+            "{} ticks={} substeps={} every={:?} cares={:?} late={} drops={}",
             writer.structure,
             self.ticks(),
             self.run.substeps,
             flight.stack.every,
             flight.cares,
             flight.timing.late,
+            flight.timing.drops,
         )
     }
 }

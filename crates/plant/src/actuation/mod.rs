@@ -41,10 +41,10 @@ pub trait Actuate<T: Real>: Plain<T> {
     /// Told at every tick what is broken; only rotors of their own can break.
     #[inline(always)]
     fn suffer(&mut self, _faults: &RotorFaults<T>, _state: &State<T>, _dt: T) {}
-    /// What acts on the body in this state.
+    /// What acts on the body in this state, where it is more than thrust and torque in still air.
     #[inline(always)]
-    fn load(&self, state: &State<T>, vehicle: &Vehicle<T>, _: &Conditions<T>) -> Load<T> {
-        Load { thrust_per_mass: self.thrust_per_mass(state, vehicle), torque: self.torque(state) }
+    fn load(&self, _: &State<T>, _: &Vehicle<T>, _: &Conditions<T>) -> Option<Load<T>> {
+        None
     }
     /// The rotors' thrust per mass, in still air, m/s^2.
     fn thrust_per_mass(&self, state: &State<T>, vehicle: &Vehicle<T>) -> Vec3<T, World>;
@@ -83,6 +83,20 @@ macro_rules! dispatch_actuate {
                 wrench
             }
 
+            /// What the rotors do to the body in this state, vehicle by vehicle.
+            #[inline(always)]
+            pub fn load(&self, state: &State<T>, vehicle: &Vehicle<T>, around: &Conditions<T>) -> Load<T> {
+                match self { $( Self::$variant(all) => all.load(state, vehicle, around).unwrap_or_else(|| {
+                    let mut load = Load::default();
+                    for i in 0..T::LANES {
+                        let (one, state) = (all.pick(i), state.pick(i));
+                        let thrust_per_mass = one.thrust_per_mass(&state, &vehicle.pick(i));
+                        Load { thrust_per_mass, torque: one.torque(&state) }.put(&mut load, i);
+                    }
+                    load
+                }), )+ }
+            }
+
             /// The state `h` seconds on, vehicle by vehicle, where nothing but pushes disturbs it.
             #[inline(always)]
             pub fn step(&mut self, state: &State<T>, h: T, vehicle: &Vehicle<T>, held: &Held<T>) -> State<T> {
@@ -114,10 +128,6 @@ macro_rules! dispatch_actuate {
             #[inline(always)]
             fn suffer(&mut self, faults: &RotorFaults<T>, state: &State<T>, dt: T) {
                 match self { $( Self::$variant(x) => x.suffer(faults, state, dt), )+ }
-            }
-            #[inline(always)]
-            fn load(&self, state: &State<T>, vehicle: &Vehicle<T>, conditions: &Conditions<T>) -> Load<T> {
-                match self { $( Self::$variant(x) => x.load(state, vehicle, conditions), )+ }
             }
             fn reset(&mut self) {
                 match self { $( Self::$variant(x) => x.reset(), )+ }

@@ -27,7 +27,7 @@ use stormpetrel_control::allocation::Allocation;
 use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::options::Rows;
 use stormpetrel_control::real::{Mask as _, Real};
-use stormpetrel_control::record::{each, from_index};
+use stormpetrel_control::record::{RecordExt as _, each, from_index};
 use stormpetrel_control::signals::Wrench;
 use stormpetrel_control::stack::{Command, Exit};
 use stormpetrel_control::{choice, options, record};
@@ -106,8 +106,10 @@ record! {
         drag_coefficient: T [N m s^2/rad^2];
         /// Below this the rotor stands still.
         dead_zone: T [rad/s];
-        /// Time constants, rising and falling.
-        lags: [T; 2] [s];
+        /// One over the time constants, rising and falling.
+        per_lags: [T; 2] [1/s];
+        /// One over the mass of the vehicle without a payload.
+        per_mass: T [1/kg];
         /// Integration step for which the decays hold; zero before the first.
         step: T [s];
         /// exp(-h/(2 tau)), rising and falling.
@@ -132,7 +134,7 @@ record! {
 impl Propulsion<f64> {
     /// At rest.
     pub fn new(gains: Gains<f64>, options: Options, vehicle: &Vehicle<f64>) -> Self {
-            let fall = vehicle.motor_lag_fall;
+        let fall = vehicle.motor_lag_fall;
         let fall = if fall > 0.0 { fall } else { vehicle.motor_lag };
         let per_volt = gains.speed_per_volt;
         let full = gains.battery_full;
@@ -145,7 +147,8 @@ impl Propulsion<f64> {
             thrust_coefficient: vehicle.thrust_coefficient,
             drag_coefficient: vehicle.drag_coefficient,
             dead_zone: vehicle.rotor_dead_zone,
-            lags: [vehicle.motor_lag, fall],
+            per_lags: [1.0 / vehicle.motor_lag, 1.0 / fall],
+            per_mass: 1.0 / vehicle.mass,
             commanded: [vehicle.hover_speed(); 4],
             battery: Battery {
                 capacity: gains.battery_capacity,
@@ -175,6 +178,23 @@ impl<T: Real> Propulsion<T> {
             return [self.thrust_coefficient * square, self.drag_coefficient * square];
         }
         look_up_lanes(&self.curve, speed)
+    }
+
+    /// The rotor of this index at this speed.
+    #[inline(always)]
+    fn turning(&self, index: usize, speed: T) -> Turning<T> {
+        let [thrust, drag] = self.rotor(speed);
+        let [rise, fall] = self.per_lags;
+        let rate = T::select(T::zero().lt(self.rising[index]), rise, fall);
+        Turning {
+            mount: self.mounts[index],
+            speed,
+            spin_up: (self.commanded[index] - speed) * rate, // (2)
+            thrust,
+            drag,
+            health: self.health[index],
+            ground: self.ground,
+        }
     }
 
     /// Thrusts that the laws expect at these speeds.
@@ -241,40 +261,44 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
     #[inline(always)]
     fn pass(&mut self, h: T) {
         if !self.step.eq(h).all() {
-            let [up, down] = self.lags;
             let half = -h.half();
-            (self.step, self.half_decays) = (h, [(half / up).exp(), (half / down).exp()]);
+            (self.step, self.half_decays) = (h, each(self.per_lags, |rate| (half * rate).exp()));
         }
     }
     #[inline(always)]
-    fn load(&self, state: &State<T>, vehicle: &Vehicle<T>, around: &Conditions<T>) -> Load<T> {
-        let omega = state.rate;
-        let through = through_air(state, around.wind);
-        let z = state.attitude.z_axis();
-        let up = Vec3::up(T::one());
-        let [rise, fall] = each(self.lags, |lag| T::one() / lag);
-        let (mut thrust, mut torque) = (T::zero(), Vec3::zero());
-        for i in 0..4 {
-            let Mount { place, spin } = self.mounts[i];
-            let speed = state.rotor_speed[i];
-            let [still, drag] = self.rotor(speed);
-            let flow = through + omega.cross(place - around.shift);
-            let height = state.position.z + (state.attitude * place).z - self.ground;
-            let gain = self.health[i] * cushion(height, vehicle.rotor_radius);
-            let lift = gain * (still - vehicle.inflow_loss * speed * flow.z); // (3)
-            let rate = T::select(T::zero().lt(self.rising[i]), rise, fall);
-            let spin_up = (self.commanded[i] - speed) * rate; // (2)
-            let yaw = self.health[i] * drag + vehicle.rotor_inertia * spin_up; // (4)
-            thrust += lift;
-            torque += place.cross(up * lift) - up * (spin * yaw)
-                - omega.cross(up) * (spin * vehicle.rotor_inertia * speed)
-                - up.cross(flow) * (vehicle.flapping * self.health[i] * speed); // (5)
+    fn load(
+        &self,
+        state: &State<T>,
+        vehicle: &Vehicle<T>,
+        around: &Conditions<T>,
+    ) -> Option<Load<T>> {
+        let mut through: Vec3<T, Body> = Vec3::zero();
+        for i in 0..T::LANES {
+            through_air(&state.pick(i), around.wind.pick(i)).put(&mut through, i);
         }
-        Load { thrust_per_mass: z * (thrust / vehicle.mass), torque }
+        let mut sum: Wrench<T> = Wrench::default();
+        for index in 0..4 {
+            let rotor = self.turning(index, state.rotor_speed[index]);
+            for i in 0..T::LANES {
+                let (state, vehicle) = (state.pick(i), vehicle.pick(i));
+                let flow = through.pick(i) - state.rate.cross(around.shift.pick(i));
+                let one = rotor.pick(i).wrench(&state, &vehicle, flow);
+                let so_far = sum.pick(i);
+                let (thrust, torque) = (so_far.thrust + one.thrust, so_far.torque + one.torque);
+                Wrench { thrust, torque }.put(&mut sum, i);
+            }
+        }
+        let mut load: Load<T> = Load::default();
+        for i in 0..T::LANES {
+            let Wrench { thrust, torque } = sum.pick(i);
+            let up = state.attitude.pick(i).z_axis();
+            Load { thrust_per_mass: up * (thrust * self.per_mass.lane(i)), torque }.put(&mut load, i);
+        }
+        Some(load)
     }
     #[inline(always)]
-    fn thrust_per_mass(&self, state: &State<T>, vehicle: &Vehicle<T>) -> Vec3<T, World> {
-        state.attitude.z_axis() * (self.thrust(state) / vehicle.mass)
+    fn thrust_per_mass(&self, state: &State<T>, _: &Vehicle<T>) -> Vec3<T, World> {
+        state.attitude.z_axis() * (self.thrust(state) * self.per_mass)
     }
     #[inline(always)]
     fn torque(&self, state: &State<T>) -> Vec3<T, Body> {
@@ -310,9 +334,48 @@ fn dot<T: Real>(a: [T; 4], b: [T; 4]) -> T {
     a[0] * b[0] + a[1] * b[1] + (a[2] * b[2] + a[3] * b[3])
 }
 
+record! {
+    /// One rotor at one moment.
+    struct Turning {
+        /// Place and spin.
+        mount: Mount<T> [];
+        /// Speed.
+        speed: T [rad/s];
+        /// Rate of change of the speed (2).
+        spin_up: T [rad/s^2];
+        /// Thrust in still air, before its health.
+        thrust: T [N];
+        /// Drag torque, before its health.
+        drag: T [N m];
+        /// True over expected thrust and torque.
+        health: T [1];
+        /// Height of the ground.
+        ground: T [m];
+    }
+}
+
+impl<T: Real> Turning<T> {
+    /// Thrust and torque about the centre of mass, (3) to (5); `flow` is the velocity of the rotors' centre
+    /// through the air, m/s.
+    #[inline(always)]
+    fn wrench(&self, state: &State<T>, vehicle: &Vehicle<T>, flow: Vec3<T, Body>) -> Wrench<T> {
+        let (Mount { place, spin }, speed, omega) = (self.mount, self.speed, state.rate);
+        let flow = flow + omega.cross(place);
+        let height = state.position.z + (state.attitude * place).z - self.ground;
+        let gain = self.health * cushion(height, vehicle.rotor_radius);
+        let thrust = gain * (self.thrust - vehicle.inflow_loss * speed * flow.z); // (3)
+        let yaw = self.health * self.drag + vehicle.rotor_inertia * self.spin_up; // (4)
+        let torque = place.cross_up() * thrust
+            - Vec3::up(spin * yaw)
+            - omega.cross_up() * (spin * vehicle.rotor_inertia * speed)
+            + flow.cross_up() * (vehicle.flapping * self.health * speed); // (5)
+        Wrench { thrust, torque }
+    }
+}
+
 /// More thrust near the ground (6).
 #[inline(always)]
 fn cushion<T: Real>(height: T, radius: T) -> T {
-    let ratio = radius / (T::lit(4.0) * height.max(radius.half()).max(T::lit(1e-9)));
-    T::one() / (T::one() - ratio.sq())
+    let square = (T::lit(4.0) * height.max(radius.half()).max(T::lit(1e-9))).sq();
+    square / (square - radius.sq())
 }

@@ -165,24 +165,36 @@ macro_rules! dispatch_disturb {
             }
             #[inline(always)]
             fn push(&mut self, scene: &Scene<T>) -> Push<T> {
-                let mut push = Push::default();
-                match self { $( Self::$variant(all) => for i in 0..T::LANES {
-                    let mut one = all.pick(i);
-                    one.push(&scene.pick(i)).put(&mut push, i);
+                let (mut push, scene) = (Push::default(), *scene);
+                match self { $( Self::$variant(all) => {
+                    let mut local = *all;
+                    for i in 0..T::LANES {
+                        let mut one = local.pick(i);
+                        one.push(&scene.pick(i)).put(&mut push, i);
+                        if one.remembers() {
+                            one.put(&mut local, i);
+                        }
+                    }
                     if all.remembers() {
-                        one.put(all, i);
+                        *all = local;
                     }
                 } )+ }
                 push
             }
             #[inline(always)]
             fn wind(&mut self, scene: &Scene<T>) -> Vec3<T, World> {
-                let mut wind = Vec3::zero();
-                match self { $( Self::$variant(all) => for i in 0..T::LANES {
-                    let mut one = all.pick(i);
-                    one.wind(&scene.pick(i)).put(&mut wind, i);
+                let (mut wind, scene) = (Vec3::zero(), *scene);
+                match self { $( Self::$variant(all) => {
+                    let mut local = *all;
+                    for i in 0..T::LANES {
+                        let mut one = local.pick(i);
+                        one.wind(&scene.pick(i)).put(&mut wind, i);
+                        if one.remembers() {
+                            one.put(&mut local, i);
+                        }
+                    }
                     if all.remembers() {
-                        one.put(all, i);
+                        *all = local;
                     }
                 } )+ }
                 wind

@@ -6,7 +6,7 @@
 //! the onset does not change what they draw.
 
 use stormpetrel_control::math::{Vec3, World};
-use stormpetrel_control::real::{Mask as _, Real};
+use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
 use stormpetrel_control::record::{Meta, Path, Record as _, RecordExt as _};
 use stormpetrel_control::registry::{Settings, SettingsVisitor};
@@ -108,11 +108,6 @@ impl<T: Real> Source<T> {
     pub fn rotors(&self, scene: &Scene<T>) -> RotorFaults<T> {
         let faults = self.what.rotors(&self.since_onset(scene));
         record::blend(self.on(scene.time), &faults, &RotorFaults::none())
-    }
-
-    /// Whether it acts in any lane at this time.
-    pub fn acts(&self, time: T) -> bool {
-        !(!self.on(time)).all()
     }
 }
 

@@ -169,7 +169,7 @@ record! {
         mass_ratio: T [1];
         /// The rotors' thrust per mass at the start of the tick.
         thrust_per_mass: Vec3<T, World> [m/s^2];
-        /// What the laws decided at the last tick.
+        /// What the laws decided at the last tick, where commands may be late.
         decided: Command<T> [];
         /// What the allocation refused at the last tick.
         unallocated: Wrench<T> [];
@@ -307,22 +307,24 @@ impl<T: Real> Flight<T> {
     #[inline(always)]
     fn command(&mut self, told: &Measurement<T>, reference: &Trajectory<T>) -> Command<T> {
         let dt = self.control_step;
-        let before = if self.timing.late { Some(self.stack) } else { None };
+        let before = if self.timing.drops { Some((self.stack, self.decided)) } else { None };
         let mut command = self.stack.update(told, reference, dt);
-        if let Some(before) = before {
-            command = self.delay(before, command);
+        if self.timing.late {
+            self.decided = command;
+            if let Some((stack, decided)) = before {
+                self.drop_tick(&stack, &decided);
+            }
+            command = self.timing.pass(&self.decided, self.ticks(), self.tick, dt);
         }
         command
     }
 
-    /// What reaches the rotors now; where the tick is dropped, the laws have not run.
+    /// Where the tick is dropped, the laws have not run: they and their command are as before.
     #[inline(never)]
-    fn delay(&mut self, before: Stack<T>, command: Command<T>) -> Command<T> {
-        let tick = self.ticks();
-        let dropped = self.timing.dropped(tick);
-        self.stack = blend(dropped, &before, &self.stack);
-        self.decided = blend(dropped, &self.decided, &command);
-        self.timing.pass(&self.decided, tick, self.tick, self.control_step)
+    fn drop_tick(&mut self, stack: &Stack<T>, decided: &Command<T>) {
+        let dropped = self.timing.dropped(self.ticks());
+        self.stack = blend(dropped, stack, &self.stack);
+        self.decided = blend(dropped, decided, &self.decided);
     }
 
     /// m_law (a + g_law e_z) - T_law R e_z from the true acceleration, N.

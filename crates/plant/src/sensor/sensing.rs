@@ -11,9 +11,9 @@
 
 use core::f64::consts::TAU;
 
-use stormpetrel_control::controller::mended;
 use stormpetrel_control::estimator::covariance::ErrorState;
 use stormpetrel_control::estimator::{Eskf, Imu};
+use stormpetrel_control::guard::mended;
 use stormpetrel_control::math::{Body, Vec3};
 use stormpetrel_control::real::{Mask, Real};
 use stormpetrel_control::record;

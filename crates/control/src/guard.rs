@@ -1,0 +1,313 @@
+//! What keeps a law total: guards around controllers and observers.
+
+use crate::controller::{Controller, Observer, Plain};
+use crate::math::{Vec3, World};
+use crate::real::{Mask, Real};
+use crate::record::{Meta, Path, Record, Visitor, VisitorMut, blend, clamp, each};
+use crate::signals::{Applied, Measurement};
+
+/// Makes a law total: whatever comes in, a finite command within the limit goes out.
+///
+/// Non-finite input, state or output gives the last good command and raises the flag; the state
+/// from before a bad input is kept, and what of it is not finite is reset.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Guarded<T, Law, Command> {
+    /// The law inside.
+    pub law: Law,
+    last: Command,
+    /// 1 where the last tick's command was held, else 0.
+    pub flag: T,
+}
+
+impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
+    /// Guards the law; `command` is held until the first good one.
+    pub fn new(law: L, command: L::Command) -> Self {
+        Self { law, last: command, flag: T::zero() }
+    }
+
+    /// [`Controller::update`], total.
+    #[inline(always)]
+    pub fn update(
+        &mut self,
+        measurement: &Measurement<T>,
+        reference: &L::Reference,
+        dt: T,
+    ) -> L::Command {
+        let input = passing(measurement, dt).and(finite(reference));
+        self.update_checked(input, measurement, reference, dt)
+    }
+
+    /// [`Guarded::update`] where the caller knows already in which lanes the `input` is good.
+    #[inline(always)]
+    pub fn update_checked(
+        &mut self,
+        input: Good<T>,
+        measurement: &Measurement<T>,
+        reference: &L::Reference,
+        dt: T,
+    ) -> L::Command {
+        // Whether all is well decides only what need not be computed: the results are the same.
+        let before = if input.all { None } else { Some(self.law) };
+        self.law.tune(dt);
+        let command = self.law.update(measurement, reference, dt);
+        let limit = self.law.limit();
+        // Numbers whose magnitudes together are within the limit are finite, and within it one by one.
+        // Zero times a state or limit that is not finite makes the sum one that is not a number.
+        let rest = (self.law.sum(|x| x) + limit) * T::zero();
+        if input.all && (command.magnitude() + rest).le(limit).all() {
+            self.last = command;
+            self.flag = T::zero();
+        } else {
+            self.settle(&command, limit, input.lanes, before, measurement);
+        }
+        self.last
+    }
+
+    /// The last command that was granted.
+    #[inline(always)]
+    pub fn held(&self) -> L::Command {
+        self.last
+    }
+
+    /// Grants what is good of the command, within the limit, and mends the rest.
+    #[cold]
+    #[inline(never)]
+    fn settle(
+        &mut self,
+        command: &L::Command,
+        limit: T,
+        input: T::Mask,
+        before: Option<L>,
+        measurement: &Measurement<T>,
+    ) {
+        let good = input & command.finite() & self.law.finite() & limit.is_finite();
+        self.last = blend(good, &clamp(command, limit), &bounded(&self.last, limit));
+        self.flag = T::select(good, T::zero(), T::one());
+        if !good.all() {
+            self.mend(input, before, measurement);
+        }
+    }
+
+    /// Takes the state from before a bad input, and resets what of it is not finite.
+    fn mend(&mut self, input: T::Mask, before: Option<L>, measurement: &Measurement<T>) {
+        if let Some(before) = before {
+            self.law = blend(input, &self.law, &before);
+        }
+        let mut fresh = self.law;
+        fresh.reset(&mended(measurement, &Measurement::default()));
+        self.law = mended(&self.law, &fresh);
+    }
+
+    /// [`Controller::reset`]; the default command is held until the first good one.
+    pub fn reset(&mut self, measurement: &Measurement<T>)
+    where
+        L::Command: Default,
+    {
+        self.law.reset(&mended(measurement, &Measurement::default()));
+        self.last = L::Command::default();
+        self.flag = T::zero();
+    }
+}
+
+/// Makes an observer total, as [`Guarded`] does for a law.
+#[derive(Clone, Copy, Debug)]
+pub struct GuardedObserver<T, Law> {
+    /// The observer inside.
+    pub law: Law,
+    last: Measurement<T>,
+    /// 1 where the last tick was ignored or mended, else 0.
+    pub flag: T,
+}
+
+impl<T: Real, L: Default> Default for GuardedObserver<T, L> {
+    fn default() -> Self {
+        Self { law: L::default(), last: Measurement::default(), flag: T::zero() }
+    }
+}
+
+impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
+    /// Guards the observer.
+    pub fn new(law: O) -> Self {
+        Self { law, last: Measurement::default(), flag: T::zero() }
+    }
+
+    /// [`Observer::estimate`], finite and within the limit.
+    #[inline(always)]
+    pub fn estimate(&self) -> Vec3<T, World> {
+        let limit = self.law.limit();
+        self.law.estimate().map(|x| x.clamp(-limit, limit))
+    }
+
+    /// [`Observer::correct`], total.
+    #[inline(always)]
+    pub fn correct(&mut self, measurement: &Measurement<T>, dt: T) {
+        self.correct_checked(passing(measurement, dt), measurement, dt);
+    }
+
+    /// [`GuardedObserver::correct`] where the caller knows already in which lanes the `input` is
+    /// good.
+    #[inline(always)]
+    pub fn correct_checked(&mut self, input: Good<T>, measurement: &Measurement<T>, dt: T) {
+        self.flag = T::zero();
+        let before = if input.all { None } else { Some(self.law) };
+        self.law.correct(measurement, dt);
+        self.last =
+            if input.all { *measurement } else { blend(input.lanes, measurement, &self.last) };
+        self.check(input, before);
+    }
+
+    /// [`Observer::advance`], total.
+    #[inline(always)]
+    pub fn advance(&mut self, applied: &Applied<T>, dt: T) {
+        let input = passing(applied, dt);
+        let before = if input.all { None } else { Some(self.law) };
+        self.law.advance(applied, dt);
+        self.check(input, before);
+    }
+
+    /// [`Observer::reset`].
+    pub fn reset(&mut self, measurement: &Measurement<T>) {
+        self.last = mended(measurement, &Measurement::default());
+        self.law.reset(&self.last);
+        self.flag = T::zero();
+    }
+
+    #[inline(always)]
+    fn check(&mut self, input: Good<T>, before: Option<O>) {
+        let good = input.and(finite(&self.law));
+        if !good.all {
+            self.mend(good.lanes, input.lanes, before);
+        }
+    }
+
+    /// Takes the state from before a bad input, and resets what of it is not finite.
+    #[cold]
+    #[inline(never)]
+    fn mend(&mut self, good: T::Mask, input: T::Mask, before: Option<O>) {
+        self.flag = T::select(good, self.flag, T::one());
+        if let Some(before) = before {
+            self.law = blend(input, &self.law, &before);
+        }
+        let mut fresh = self.law;
+        fresh.reset(&self.last);
+        self.law = mended(&self.law, &fresh);
+    }
+}
+
+/// In which lanes something is good, and whether it is in all of them: asked once, used often.
+#[derive(Clone, Copy, Debug)]
+pub struct Good<T: Real> {
+    lanes: T::Mask,
+    all: bool,
+}
+
+impl<T: Real> Good<T> {
+    #[inline(always)]
+    fn new(lanes: T::Mask) -> Self {
+        Self { lanes, all: lanes.all() }
+    }
+
+    /// Where both are good.
+    #[inline(always)]
+    pub fn and(self, other: Self) -> Self {
+        if self.all && other.all { self } else { Self::new(self.lanes & other.lanes) }
+    }
+}
+
+/// Where the record is finite.
+#[inline(always)]
+pub fn finite<T: Real>(record: &impl Record<T>) -> Good<T> {
+    // A finite sum has finite terms. Terms so large that their sum is not are looked at one by one.
+    let quick = Good::new(record.sum(|x| x).is_finite());
+    if quick.all { quick } else { Good::new(record.finite()) }
+}
+
+/// Where the record is finite and `dt` a time that can pass.
+#[inline(always)]
+pub fn passing<T: Real>(record: &impl Record<T>, dt: T) -> Good<T> {
+    let quick = Good::new(record.sum(|x| x).is_finite() & good_step(dt));
+    if quick.all { quick } else { Good::new(record.finite() & good_step(dt)) }
+}
+
+/// Whether the step is a time that can pass. More than a second is a gap and not a step: an
+/// observer would slide through it at its full slope.
+#[inline(always)]
+fn good_step<T: Real>(dt: T) -> T::Mask {
+    T::zero().lt(dt) & dt.le(T::one())
+}
+
+/// Number by number: the record's own within the limit; zero where even that is not finite.
+#[inline(always)]
+fn bounded<T: Real, R: Plain<T>>(record: &R, limit: T) -> R {
+    R::zip([record], &mut |[x]| {
+        let within = x.clamp(-limit, limit);
+        T::select(x.is_finite() & within.is_finite(), within, T::zero())
+    })
+}
+
+/// Number by number: the record's own where finite, else that of `spare`.
+#[inline(always)]
+pub fn mended<T: Real, R: Plain<T>>(record: &R, spare: &R) -> R {
+    R::zip([record, spare], &mut |[x, y]| T::select(x.is_finite(), x, y))
+}
+
+/// A guard is a record like any other; what it holds shows as `held` and `flag`.
+macro_rules! guard_record {
+    ($guard:ident, $law:ident $($command:ident)?, $held:ty) => {
+        impl<T: Real, $law: Record<T> $(, $command: Record<T>)?> Record<T> for $guard<T, $law $(, $command)?> {
+            type With<U: Real> = $guard<U, $law::With<U> $(, $command::With<U>)?>;
+            #[inline(always)]
+            fn visit(&self, path: &Path<'_>, meta: &Meta, v: &mut impl Visitor<T>) {
+                self.law.visit(path, meta, v);
+                self.last.visit(&path.join("held"), meta, v);
+                v.number(&path.join("flag"), &FLAG, self.flag);
+            }
+            #[inline(always)]
+            fn visit_mut(&mut self, path: &Path<'_>, meta: &Meta, v: &mut impl VisitorMut<T>) {
+                self.law.visit_mut(path, meta, v);
+                self.last.visit_mut(&path.join("held"), meta, v);
+                v.number(&path.join("flag"), &FLAG, &mut self.flag);
+            }
+            #[inline(always)]
+            fn zip<const M: usize, U: Real>(
+                rows: [&Self; M],
+                f: &mut impl FnMut([T; M]) -> U,
+            ) -> Self::With<U> {
+                $guard {
+                    law: $law::zip(each(rows, |row| &row.law), f),
+                    last: <$held>::zip(each(rows, |row| &row.last), f),
+                    flag: f(each(rows, |row| row.flag)),
+                }
+            }
+            #[inline(always)]
+            fn pick_lane(&self, i: usize) -> Self::With<T::Scalar> {
+                $guard {
+                    law: self.law.pick_lane(i),
+                    last: self.last.pick_lane(i),
+                    flag: self.flag.lane(i),
+                }
+            }
+            #[inline(always)]
+            fn put_mapped<U: Real<Scalar = T>>(
+                &self,
+                batch: &mut Self::With<U>,
+                i: usize,
+                f: &mut impl FnMut(T) -> T,
+            ) {
+                self.law.put_mapped(&mut batch.law, i, f);
+                self.last.put_mapped(&mut batch.last, i, f);
+                batch.flag.set_lane(i, f(self.flag));
+            }
+            #[inline(always)]
+            fn each_variable(&self, f: &mut impl FnMut(T)) {
+                self.law.each_variable(f);
+                self.last.each_variable(f);
+                f(self.flag);
+            }
+        }
+    };
+}
+guard_record! { Guarded, L C, C }
+guard_record! { GuardedObserver, L, Measurement<T> }
+
+const FLAG: Meta = Meta::signal("1", "1 where the law held its last good value.");
