@@ -3,7 +3,7 @@
 use crate::controller::{Controller, Observer, Plain};
 use crate::math::{Vec3, World};
 use crate::real::{Mask, Real};
-use crate::record::{Meta, Path, Record, Visitor, VisitorMut, blend, clamp, each};
+use crate::record::{Meta, Path, Record, Visitor, VisitorMut, blend, clamp, each, same};
 use crate::signals::{Applied, Measurement};
 
 /// Makes a law total: whatever comes in, a finite command within the limit goes out.
@@ -55,11 +55,10 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
         // Zero times a state or limit that is not finite makes the sum one that is not a number.
         let rest = (self.law.sum(|x| x) + limit) * T::zero();
         if input.all && (command.magnitude() + rest).le(limit).all() {
-            self.last = command;
-            self.flag = T::zero();
-        } else {
-            self.settle(&command, limit, input.lanes, before, measurement);
+            (self.last, self.flag) = (same(&command), T::zero());
+            return command;
         }
+        self.settle(&command, limit, input.lanes, before, measurement);
         self.last
     }
 

@@ -202,6 +202,13 @@ pub trait RecordExt<T: Real>: Record<T> {
 
 impl<T: Real, R: Record<T>> RecordExt<T> for R {}
 
+/// The same record. Of one vehicle, number by number: a copy in wider pieces would wait until the numbers
+/// just written have left the store buffer.
+#[inline(always)]
+pub fn same<T: Real, R: Record<T, With<T> = R> + Copy>(record: &R) -> R {
+    if T::LANES == 1 { R::zip([record], &mut |[x]| x) } else { *record }
+}
+
 /// `new` where the mask says yes, else `old`.
 #[inline(always)]
 pub fn blend<T: Real, R: Record<T, With<T> = R>>(mask: T::Mask, new: &R, old: &R) -> R {

@@ -138,6 +138,10 @@ macro_rules! registry {
                 match self { $( Self::$variant(law) => law.each_variable(f), )+ }
             }
             #[$inline]
+            fn sum(&self, f: impl Fn(T::Scalar) -> T::Scalar) -> T {
+                match self { $( Self::$variant(law) => law.sum(f), )+ }
+            }
+            #[$inline]
             fn finite(&self) -> T::Mask {
                 match self { $( Self::$variant(law) => law.finite(), )+ }
             }

@@ -178,18 +178,20 @@ impl<T: Real> Stack<T> {
     pub fn advance(&mut self, applied: &Applied<T>, dt: T) {
         self.step += 1;
         let slow = self.every.position;
-        if slow == 1 {
-            return self.observer.advance(applied, dt);
-        }
-        self.applied.commanded += applied.commanded;
-        self.applied.measured += applied.measured;
-        if self.due(slow) {
+        let (mut mean, mut interval) = (*applied, dt);
+        if slow > 1 {
+            self.applied.commanded += applied.commanded;
+            self.applied.measured += applied.measured;
+            if !self.due(slow) {
+                return;
+            }
             let share = T::lit(1.0 / f64::from(slow));
             let Applied { commanded, measured } = self.applied;
-            let mean = Applied { commanded: commanded * share, measured: measured * share };
-            self.observer.advance(&mean, dt * T::lit(f64::from(slow)));
+            mean = Applied { commanded: commanded * share, measured: measured * share };
+            interval = dt * T::lit(f64::from(slow));
             self.applied = Applied::default();
         }
+        self.observer.advance(&mean, interval);
     }
 
     /// The disturbance estimate that the next command subtracts, m/s^2.

@@ -5,7 +5,7 @@ mod surroundings;
 use stormpetrel_control::math::{Body, Rotation, Vec3, World};
 use stormpetrel_control::real::{Mask, Real};
 use stormpetrel_control::record;
-use stormpetrel_control::record::{Record as _, RecordExt as _, blend};
+use stormpetrel_control::record::{Record as _, RecordExt as _, blend, same};
 use stormpetrel_control::signals::{Applied, Measurement, Model, Trajectory, Wrench};
 use stormpetrel_control::stack::{Command, Stack};
 
@@ -383,7 +383,7 @@ impl<T: Real> Flight<T> {
         };
         let steady = state.sum(|x| x).is_finite() & T::zero().lt(self.alive);
         if steady.all() {
-            self.state = state;
+            self.state = same(&state);
         } else {
             self.settle(&state);
         }

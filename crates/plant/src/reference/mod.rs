@@ -22,11 +22,13 @@ macro_rules! dispatch_refer {
         impl<T: Real> Refer<T> for $name<T> {
             #[inline(always)]
             fn at(&self, time: T) -> Trajectory<T> {
-                let mut at = Trajectory::default();
-                match self { $( Self::$variant(all) => for i in 0..T::LANES {
-                    all.pick(i).at(time.lane(i)).put(&mut at, i);
+                match self { $( Self::$variant(all) => {
+                    let mut at = Trajectory::default();
+                    for i in 0..T::LANES {
+                        all.pick(i).at(time.lane(i)).put(&mut at, i);
+                    }
+                    at
                 } )+ }
-                at
             }
         }
     };
