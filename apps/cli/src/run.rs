@@ -2,16 +2,17 @@
 
 use std::path::Path;
 
+use indicatif::ProgressBar;
 use serde_json::{Map, Value, json};
 use stormpetrel_lab::figures::{self, Drawing};
-use stormpetrel_lab::fly::fly_told_apart;
+use stormpetrel_lab::fly::{Cause, Failure as Failed, fly_told_apart};
 use stormpetrel_lab::log::Csv;
 use stormpetrel_lab::output::{Folder, manifest_json, metrics_json, variants_json};
 use stormpetrel_lab::plot::png;
 use stormpetrel_lab::reproduce::{Flown, Table};
 use stormpetrel_lab::scenario::fault::{Fault, Faults, printable};
 use stormpetrel_lab::scenario::{File, Scenario, load, too_long};
-use stormpetrel_lab::sensitivity::spread;
+use stormpetrel_lab::sensitivity::{STARTS, spread};
 use stormpetrel_lab::trace::Trace;
 
 use crate::args::{Common, Run};
@@ -30,13 +31,14 @@ pub fn run(args: &Run, common: &Common) -> Result<(), Failure> {
     let broken = |error| Failure::out(&args.out, &error);
     let folder = begin(&args.out, &scenarios).map_err(broken)?;
     let bar = terminal::progress("flying", common.quiet || common.json);
-    bar.set_length(scenarios.len() as u64);
+    terminal::with_share(&bar);
+    bar.set_length(scenarios.iter().map(Scenario::ticks).sum());
     let single = scenarios.len() == 1;
     let mut flights = Vec::new();
     for scenario in scenarios {
-        let prefix = prefix(&scenario, single);
-        flights.push(fly_into(&folder, &prefix, scenario).map_err(broken)?);
-        bar.inc(1);
+        let (prefix, end) = (prefix(&scenario, single), bar.position() + scenario.ticks());
+        flights.push(fly_into(&folder, &prefix, scenario, &bar).map_err(broken)?);
+        bar.set_position(end);
     }
     bar.finish_and_clear();
     folder.publish().map_err(broken)?;
@@ -86,18 +88,31 @@ pub fn choose(file: File, variant: Option<&str>) -> Result<Vec<Scenario>, Failur
     Ok(chosen)
 }
 
-/// Flies one scenario and writes log, metrics, manifest and figures.
-pub fn fly_into(folder: &Folder, prefix: &str, scenario: Scenario) -> std::io::Result<Flown> {
+/// Ticks after which the bar moves.
+const STRIDE: u64 = 10_000;
+
+/// Flies one scenario and writes log, metrics, manifest and figures; the bar counts its ticks.
+pub fn fly_into(
+    folder: &Folder,
+    prefix: &str,
+    scenario: Scenario,
+    bar: &ProgressBar,
+) -> std::io::Result<Flown> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number by rule
     let every = scenario.run.log_every as u64;
     let file = folder.create(&format!("{prefix}flight.csv"))?;
-    let mut csv = Csv::new(file, every, scenario.disturbance.len())?;
+    let mut csv = Csv::new(file, every, &scenario)?;
     let mut trace = Trace::new(scenario.ticks(), POINTS);
     let mut written = Ok(());
+    let mut flown = 0u64;
     let outcome = fly_told_apart(&scenario, |seen| {
+        flown += 1;
+        if flown.is_multiple_of(STRIDE) {
+            bar.inc(STRIDE);
+        }
         trace.push(seen);
         if written.is_ok() {
-            written = csv.push(seen.tick, seen.sources);
+            written = csv.push(seen);
         }
     });
     written?;
@@ -163,6 +178,31 @@ fn summary(flights: &[Flown]) -> Table {
     }
 }
 
+/// What failed: the flight, or starts beside it.
+fn describe_failure(flown: &Flown) -> String {
+    let told = |failure: Failed| {
+        let cause = failure.cause.describe();
+        let hint = match failure.cause {
+            Cause::NonFinite => " (is the step too long? try a higher run.substeps)",
+            _ => "",
+        };
+        format!("failed at {:.3} s: {cause}{hint}", failure.time)
+    };
+    let beside = flown.spread.as_ref();
+    let (failed, first) =
+        beside.map_or((0, None), |spread| (spread.failures(), spread.first_failure()));
+    match (flown.outcome.failure, first) {
+        (Some(failure), _) => told(failure),
+        (None, Some(first)) => {
+            format!(
+                "sensitive: {failed} of {STARTS} starts within 1e-9 m fail, the first {}",
+                told(first)
+            )
+        }
+        (None, None) => String::new(),
+    }
+}
+
 /// Prints every expectation that is not met and every failure that must not be; whether there is one.
 pub fn print_unmet<'a>(flights: impl IntoIterator<Item = &'a Flown>, faults_only: bool) -> bool {
     let mut bad = false;
@@ -176,10 +216,9 @@ pub fn print_unmet<'a>(flights: impl IntoIterator<Item = &'a Flown>, faults_only
                 if flown.spread.is_some() { " (sensitive: no number can be expected)" } else { "" };
             terminal::warn(&format!("{name}: expectation failed: {rule}, {value}{sensitive}"));
         }
-        if let Some(failure) = flown.outcome.failure.filter(|_| flown.failed()) {
+        if flown.failed() {
             bad = true;
-            let cause = failure.cause.describe();
-            terminal::warn(&format!("{name}: failed at {:.3} s: {cause}", failure.time));
+            terminal::warn(&format!("{name}: {}", describe_failure(flown)));
         }
     }
     if !bad && expected > 0 && !faults_only {

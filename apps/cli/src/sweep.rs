@@ -379,7 +379,7 @@ fn refly(
             .flight(&campaign.inputs(index), campaign.seed(index))
             .map_err(|faults| io::Error::other(faults.to_string()))?;
         let folder = stormpetrel_lab::output::Folder::new(&out.join(format!("flights/{index}")))?;
-        crate::run::fly_into(&folder, "", scenario)?;
+        crate::run::fly_into(&folder, "", scenario, &ProgressBar::hidden())?;
         folder.publish()?;
     }
     Ok(())

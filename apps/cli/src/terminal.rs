@@ -88,6 +88,15 @@ pub fn progress(what: &'static str, quiet: bool) -> ProgressBar {
     bar
 }
 
+/// Lets the bar show a share and the time that is left.
+pub fn with_share(bar: &ProgressBar) {
+    if let Ok(style) =
+        ProgressStyle::with_template("{msg} [{bar:20}] {percent} % {elapsed}, {eta} left")
+    {
+        bar.set_style(style.progress_chars("=> "));
+    }
+}
+
 /// Gives the bar room for a message that tells rate and failures.
 pub fn with_rate(bar: &ProgressBar) {
     if let Ok(style) = ProgressStyle::with_template("[{bar:20}] {pos}/{len} {elapsed}\n{wide_msg}")

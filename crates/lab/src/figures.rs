@@ -168,6 +168,22 @@ pub fn rotors(title: &str, trace: &Trace, limits: (f64, f64)) -> Drawing {
     Drawing { name: "rotors", svg: figure.svg() }
 }
 
+/// What the battery gives.
+fn battery(title: &str, trace: &Trace) -> Drawing {
+    let [charge, voltage, current] = &trace.battery;
+    let line = |name: &str, values, i| vec![series(name, &trace.time, values, i)];
+    let figure = Figure {
+        title: format!("{title}: battery"),
+        description: "Charge, voltage and current of the battery over time.".into(),
+        panels: vec![
+            panel("Charge", "share that is left (1)", line("charge", charge, 0)),
+            panel("Voltage at the rotors", "voltage (V)", line("voltage", voltage, 1)),
+            panel("Current", "current (A)", line("current", current, 2)),
+        ],
+    };
+    Drawing { name: "battery", svg: figure.svg() }
+}
+
 /// All figures of one flight.
 pub fn all(scenario: &Scenario, trace: &Trace) -> Vec<Drawing> {
     let title = &scenario.title;
@@ -186,6 +202,9 @@ pub fn all(scenario: &Scenario, trace: &Trace) -> Vec<Drawing> {
     if scenario.has_rotors() {
         let vehicle = &scenario.vehicle.vehicle;
         drawings.push(rotors(title, trace, (vehicle.rotor_speed_min, vehicle.rotor_speed_max)));
+    }
+    if scenario.has_battery() {
+        drawings.push(battery(title, trace));
     }
     drawings
 }

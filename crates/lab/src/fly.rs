@@ -3,10 +3,14 @@
 use std::collections::BTreeMap;
 
 use stormpetrel_control::real::Real;
+use stormpetrel_control::record::Record as _;
+use stormpetrel_plant::actuation::Actuate as _;
+use stormpetrel_plant::actuation::battery::Gauge;
 use stormpetrel_plant::dispatch::Width;
 use stormpetrel_plant::disturbance::MOST;
 use stormpetrel_plant::dynamics::Push;
-use stormpetrel_plant::flight::{Cause, Tick};
+pub use stormpetrel_plant::flight::Cause;
+use stormpetrel_plant::flight::Tick;
 
 use crate::batch::fly_alike;
 use crate::metric::{Distribution, Errors, Setting, Sums, metrics};
@@ -64,6 +68,8 @@ pub struct Seen<'a> {
     pub errors: &'a Errors<f64>,
     /// True force (N, world) and torque (N m, body) of each disturbance, in the order of the scenario.
     pub sources: &'a [Push<f64>],
+    /// The battery, where there is one.
+    pub battery: Option<Gauge<f64>>,
 }
 
 /// Flies one scenario; `each` sees every tick with its errors.
@@ -96,7 +102,11 @@ fn fly_seen(scenario: &Scenario, apart: bool, each: &mut dyn FnMut(&Seen<'_>)) -
         let errors = sums.push(&tick, &setting, flight.alive);
         distribution.push(&errors);
         let sources = sources.get(..told).unwrap_or_default();
-        each(&Seen { tick: &tick, errors: &errors, sources });
+        // A log ends before numbers that are none: the flight fails at this tick.
+        if !apart || tick.finite() {
+            let battery = flight.actuation.battery();
+            each(&Seen { tick: &tick, errors: &errors, sources, battery });
+        }
         flight.advance(&tick);
     }
     Outcome {

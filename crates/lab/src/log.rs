@@ -3,9 +3,13 @@
 use std::io::{self, Write};
 
 use stormpetrel_control::record::{Meta, Path, Record, Visitor};
+use stormpetrel_plant::actuation::battery::Gauge;
 use stormpetrel_plant::disturbance::MOST;
 use stormpetrel_plant::dynamics::Push;
 use stormpetrel_plant::flight::Tick;
+
+use crate::fly::Seen;
+use crate::scenario::Scenario;
 
 /// A column of the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,19 +37,24 @@ impl Visitor<f64> for Columns {
 /// The positions of disturbances, as names.
 const NUMBERS: [&str; MOST] = ["0", "1", "2", "3", "4", "5", "6", "7"];
 
-/// Walks over the disturbances: `disturbance.0.force.x` and so on.
-fn visit(sources: &[Push<f64>], v: &mut impl Visitor<f64>) {
+/// Walks over disturbances and battery: `disturbance.0.force.x` and so on, `battery.charge`.
+fn visit(sources: &[Push<f64>], battery: Option<Gauge<f64>>, v: &mut impl Visitor<f64>) {
     let root = Path::ROOT.join("disturbance");
     for (push, number) in sources.iter().zip(NUMBERS) {
         push.visit(&root.join(number), &Meta::signal("", ""), v);
     }
+    if let Some(gauge) = battery {
+        gauge.visit(&Path::ROOT.join("battery"), &Meta::signal("", ""), v);
+    }
 }
 
-/// All columns of a flight with so many disturbances, in the order of the rows.
-pub fn columns(sources: usize) -> Vec<Column> {
+/// All columns of a flight of this scenario, in the order of the rows.
+pub fn columns(scenario: &Scenario) -> Vec<Column> {
+    let sources = scenario.disturbance.len().min(MOST);
+    let battery = scenario.has_battery().then(Gauge::default);
     let mut columns = Columns::default();
     Tick::<f64>::default().visit(&Path::ROOT, &Meta::signal("", ""), &mut columns);
-    visit(&[Push::default(); MOST][..sources.min(MOST)], &mut columns);
+    visit(&[Push::default(); MOST][..sources], battery, &mut columns);
     columns.0
 }
 
@@ -58,10 +67,10 @@ impl Visitor<f64> for Row<'_> {
 }
 
 /// The numbers of a tick, in the order of [`columns`].
-pub fn row(tick: &Tick<f64>, sources: &[Push<f64>], into: &mut Vec<f64>) {
+fn row(seen: &Seen<'_>, into: &mut Vec<f64>) {
     into.clear();
-    tick.visit(&Path::ROOT, &Meta::signal("", ""), &mut Row(into));
-    visit(sources, &mut Row(into));
+    seen.tick.visit(&Path::ROOT, &Meta::signal("", ""), &mut Row(into));
+    visit(seen.sources, seen.battery, &mut Row(into));
 }
 
 /// Writes rows as CSV with one header row of dotted names.
@@ -73,12 +82,12 @@ pub struct Csv<W: Write> {
 }
 
 impl<W: Write> Csv<W> {
-    /// Writes the header of a flight with so many disturbances; every `every`-th tick becomes a row.
+    /// Writes the header of a flight of this scenario; every `every`-th tick becomes a row.
     ///
     /// # Errors
     /// What the writer says.
-    pub fn new(mut out: W, every: u64, sources: usize) -> io::Result<Self> {
-        let names: Vec<_> = columns(sources).into_iter().map(|column| column.name).collect();
+    pub fn new(mut out: W, every: u64, scenario: &Scenario) -> io::Result<Self> {
+        let names: Vec<_> = columns(scenario).into_iter().map(|column| column.name).collect();
         writeln!(out, "{}", names.join(","))?;
         Ok(Self { out, every, seen: 0, values: Vec::new() })
     }
@@ -87,13 +96,13 @@ impl<W: Write> Csv<W> {
     ///
     /// # Errors
     /// What the writer says.
-    pub fn push(&mut self, tick: &Tick<f64>, sources: &[Push<f64>]) -> io::Result<()> {
+    pub fn push(&mut self, seen: &Seen<'_>) -> io::Result<()> {
         let wanted = self.seen.is_multiple_of(self.every);
         self.seen += 1;
         if !wanted {
             return Ok(());
         }
-        row(tick, sources, &mut self.values);
+        row(seen, &mut self.values);
         for (i, value) in self.values.iter().enumerate() {
             if i > 0 {
                 self.out.write_all(b",")?;
@@ -128,7 +137,8 @@ impl Default for Hash {
 impl Hash {
     /// Takes a tick.
     pub fn push(&mut self, tick: &Tick<f64>) {
-        row(tick, &[], &mut self.values);
+        self.values.clear();
+        tick.visit(&Path::ROOT, &Meta::signal("", ""), &mut Row(&mut self.values));
         for value in &self.values {
             self.state = (self.state ^ value.to_bits()).wrapping_mul(0x0100_0000_01B3);
         }

@@ -21,14 +21,20 @@ const PROGRAM: &str = "stormpetrel";
 /// Revision of the source, or `unknown` outside a checkout.
 pub const REVISION: &str = env!("STORMPETREL_REVISION");
 
-/// `metrics.json`: flat keys; a sensitive flight has median and range in place of numbers.
+/// `metrics.json`: flat keys; a sensitive flight has median and range in place of numbers, and how many of
+/// its starts failed. A number that is not finite is `null`.
 pub fn metrics_json(outcome: &Outcome, spread: Option<&Spread>) -> Value {
     let mut all = Map::new();
     all.insert("sensitive".into(), json!(spread.is_some()));
-    all.insert("failed".into(), json!(outcome.failure.is_some()));
+    let beside = spread.is_some_and(|spread| spread.failures() > 0);
+    all.insert("failed".into(), json!(outcome.failure.is_some() || beside));
     if let Some(failure) = outcome.failure {
         all.insert("failure.time".into(), json!(failure.time));
         all.insert("failure.cause".into(), json!(failure.cause.describe()));
+    }
+    if let Some(spread) = spread {
+        all.insert("starts".into(), json!(spread.outcomes.len()));
+        all.insert("starts.failed".into(), json!(spread.failures()));
     }
     for (name, value) in &outcome.metrics {
         match spread.and_then(|spread| spread.range(name)) {
@@ -52,7 +58,7 @@ pub fn variants_json(variants: &[&str]) -> Value {
 
 /// `manifest.json`: everything needed to fly it again and to read the log.
 pub fn manifest_json(scenario: &Scenario) -> Value {
-    let columns: Vec<_> = columns(scenario.disturbance.len())
+    let columns: Vec<_> = columns(scenario)
         .into_iter()
         .map(|c| json!({ "name": c.name, "unit": c.unit, "frame": c.frame, "meaning": c.doc }))
         .collect();

@@ -7,7 +7,7 @@
 use stormpetrel_control::math::Vec3;
 use stormpetrel_control::real::Real;
 
-use crate::fly::{LANES, Outcome, fly_batch, fly_batch_position, on_all_cores};
+use crate::fly::{Failure, LANES, Outcome, fly_batch, fly_batch_position, on_all_cores};
 use crate::scenario::Scenario;
 
 /// How far a start is moved, m.
@@ -36,9 +36,10 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// The metric over all starts; `None` where no flight has it.
+    /// The metric over all starts from which it is a finite number; `None` where there is none.
     pub fn range(&self, name: &str) -> Option<Range> {
         let mut values: Vec<f64> = self.outcomes.iter().filter_map(|o| o.get(name)).collect();
+        values.retain(|value| value.is_finite());
         values.sort_by(f64::total_cmp);
         let (min, max) = (*values.first()?, *values.last()?);
         let middle = values.len() / 2;
@@ -53,6 +54,12 @@ impl Spread {
     /// Number of starts that ended in a failure.
     pub fn failures(&self) -> usize {
         self.outcomes.iter().filter(|outcome| outcome.failure.is_some()).count()
+    }
+
+    /// The failure that came first; `None` where no start failed.
+    pub fn first_failure(&self) -> Option<Failure> {
+        let all = self.outcomes.iter().filter_map(|outcome| outcome.failure);
+        all.min_by(|a, b| a.time.total_cmp(&b.time))
     }
 }
 

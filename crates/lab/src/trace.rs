@@ -2,6 +2,8 @@
 
 use stormpetrel_control::math::{Frame, Vec3};
 
+use stormpetrel_plant::actuation::battery::Gauge;
+
 use crate::fly::Seen;
 
 /// Three components over time.
@@ -34,6 +36,8 @@ pub struct Trace {
     pub rotor_speed: [Vec<f64>; 4],
     /// True force of each disturbance, N.
     pub sources: Vec<Axes>,
+    /// Charge (1), voltage (V) and current (A) of the battery; empty without one.
+    pub battery: [Vec<f64>; 3],
     /// Velocity of the air, m/s.
     pub wind: Axes,
     /// Position that the laws are told less the true one, m.
@@ -63,7 +67,7 @@ impl Trace {
 
     /// Takes a tick.
     pub fn push(&mut self, seen: &Seen<'_>) {
-        let Seen { tick, errors, sources } = *seen;
+        let Seen { tick, errors, sources, battery } = *seen;
         if self.first_peak.is_none() && errors.position < self.last_error && self.last_error > PEAK
         {
             self.first_peak = Some((tick.time, self.last_error));
@@ -84,6 +88,11 @@ impl Trace {
             self.sources.resize(sources.len(), Axes::default());
             for (axes, source) in self.sources.iter_mut().zip(sources) {
                 push(axes, source.force);
+            }
+            if let Some(Gauge { charge, voltage, current }) = battery {
+                for (line, x) in self.battery.iter_mut().zip([charge, voltage, current]) {
+                    line.push(x);
+                }
             }
             for (speeds, w) in self.rotor_speed.iter_mut().zip(tick.rotor_speed) {
                 speeds.push(w);

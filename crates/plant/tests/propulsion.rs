@@ -223,9 +223,10 @@ fn a_battery_discharges_and_sags_as_its_equations_say() {
 }
 
 #[test]
-fn an_empty_battery_limits_the_rotors_and_says_so() {
+fn a_nearly_empty_battery_limits_the_rotors_and_says_so() {
     let vehicle = vehicle();
-    let gains = propulsion::Gains { battery_charge: 0.0, battery_empty: 8.0, ..Default::default() };
+    let gains =
+        propulsion::Gains { battery_charge: 1e-3, battery_empty: 8.0, ..Default::default() };
     let options = Options { supply: Supply::Battery, ..Options::default() };
     let mut actuation = built(&vehicle, gains, options);
     let state = at_speed(1458.0);
@@ -237,6 +238,63 @@ fn an_empty_battery_limits_the_rotors_and_says_so() {
     let granted = 4.0 * vehicle.thrust_coefficient * limit * limit;
     assert!((refused.thrust - (20.0 - granted)).abs() < 1e-12);
     assert_eq!(actuation.saturation(), 1.0);
+}
+
+#[test]
+fn a_battery_gives_its_charge_and_then_nothing() {
+    let vehicle = vehicle();
+    let gains = propulsion::Gains {
+        battery_full: 12.0,
+        battery_empty: 12.0,
+        battery_resistance: 0.0,
+        battery_capacity: 5.0,
+        motor_efficiency: 0.5,
+        ..Default::default()
+    };
+    let options = Options { supply: Supply::Battery, ..Options::default() };
+    let mut actuation = built(&vehicle, gains, options);
+    let power = 4.0 * vehicle.drag_coefficient * 1458.0f64.powi(3) / 0.5;
+    let lasts = 5.0 * 12.0 / power;
+    let mut seconds = 0.0;
+    loop {
+        let refused = actuation.command(&asking(6.0), &vehicle);
+        let Actuation::Propulsion(rotors) = &actuation else { panic!("propulsion") };
+        if rotors.commanded == [0.0; 4] {
+            assert!((refused.thrust - 6.0).abs() < 1e-12);
+            break;
+        }
+        actuation.suffer(&RotorFaults::none(), &at_speed(1458.0), 1e-3);
+        seconds += 1e-3;
+    }
+    assert!((seconds - lasts).abs() < 3e-3, "{seconds} s in the place of {lasts} s");
+}
+
+#[test]
+fn rotors_settle_at_the_power_that_the_resistance_lets_through() {
+    let vehicle = vehicle();
+    let gains = propulsion::Gains {
+        battery_full: 12.0,
+        battery_empty: 12.0,
+        battery_resistance: 1.0,
+        motor_efficiency: 0.5,
+        // The voltage alone would let them turn.
+        speed_per_volt: 1e4,
+        ..Default::default()
+    };
+    let options = Options { supply: Supply::Battery, ..Options::default() };
+    let mut actuation = built(&vehicle, gains, options);
+    let mut state = at_speed(1458.0);
+    for _ in 0..2000 {
+        actuation.command(&asking(6.0), &vehicle);
+        actuation.suffer(&RotorFaults::none(), &state, 1e-3);
+        state = moved(state, 1e-3, &vehicle, &mut actuation, &calm(&vehicle));
+    }
+    let most = 12.0 * 12.0 / 4.0;
+    let power = 4.0 * vehicle.drag_coefficient * state.rotor_speed[0].powi(3) / 0.5;
+    let asked = 4.0 * vehicle.drag_coefficient * 1458.0f64.powi(3) / 0.5;
+    assert!(asked > 1.2 * most && (power / most - 1.0).abs() < 0.03, "{power} of {most} W");
+    let Actuation::Propulsion(rotors) = &actuation else { panic!("propulsion") };
+    assert!(rotors.battery.voltage * rotors.battery.current <= most * (1.0 + 1e-12));
 }
 
 #[test]

@@ -160,6 +160,14 @@ pub fn identity(campaign: &Campaign) -> u64 {
     })
 }
 
+/// A flight of the plan.
+fn built(campaign: &Campaign, index: u64) -> io::Result<Scenario> {
+    campaign.flight(&campaign.inputs(index), campaign.seed(index)).map_err(|faults| {
+        let message = format!("flight {index} of the plan cannot be flown:\n{faults}");
+        io::Error::new(io::ErrorKind::InvalidInput, message)
+    })
+}
+
 /// Flies these flights of the plan.
 ///
 /// # Errors
@@ -167,11 +175,7 @@ pub fn identity(campaign: &Campaign) -> u64 {
 pub fn fly_rows(campaign: &Campaign, rows: std::ops::Range<u64>) -> io::Result<Vec<Entry>> {
     let mut scenarios: Vec<Scenario> = Vec::new();
     for index in rows {
-        let (inputs, seed) = (campaign.inputs(index), campaign.seed(index));
-        let flight = campaign.flight(&inputs, seed).map_err(|faults| {
-            io::Error::other(format!("flight {index} of the plan cannot be flown:\n{faults}"))
-        })?;
-        scenarios.push(flight);
+        scenarios.push(built(campaign, index)?);
     }
     let outcomes = match campaign.choices.metrics {
         Metrics::All => fly_batch(&scenarios),
@@ -294,21 +298,25 @@ pub struct Estimate {
     pub bytes: u64,
 }
 
+/// Flights of a plan that are built before anything is written: the most common mistake in a sweep shows.
+const LOOK_AHEAD: u64 = 256;
+
 /// Flies eight flights of the plan for at most 2,000 ticks and reckons the whole from them.
 ///
 /// # Errors
-/// Where the first flights cannot be built.
+/// Where one of the first flights cannot be built.
 pub fn estimate(campaign: &Campaign, flights: u64, threads: usize) -> io::Result<Estimate> {
     const TICKS: f64 = 2000.0;
     let mut scenarios = Vec::new();
-    for index in 0..if flights < 8 { flights } else { 8 } {
-        let flight = campaign.flight(&campaign.inputs(index), campaign.seed(index));
-        let mut scenario = flight.map_err(|faults| io::Error::other(faults.to_string()))?;
+    for index in 0..if flights < LOOK_AHEAD { flights } else { LOOK_AHEAD } {
+        let mut scenario = built(campaign, index)?;
         let longest = TICKS * scenario.run.control_step;
         if scenario.run.duration > longest {
             scenario.run.duration = longest;
         }
-        scenarios.push(scenario);
+        if index < 8 {
+            scenarios.push(scenario);
+        }
     }
     let begin = Instant::now();
     let ticks: u64 = scenarios.iter().map(Scenario::ticks).sum();

@@ -42,6 +42,9 @@ pub fn advise(path: &Path, error: &io::Error) -> io::Error {
             "make room, raise run.log_every, or give an --out with more room"
         }
         ErrorKind::InvalidFilename => "give a shorter name, without special characters",
+        ErrorKind::InvalidInput => {
+            "mend the file so that every draw makes a flight, and begin anew in another --out"
+        }
         _ => "give another --out",
     };
     refuse(path, &error.to_string(), help)

@@ -56,9 +56,11 @@ impl Flown {
         }
     }
 
-    /// Whether the flight failed although its scenario does not allow it.
+    /// Whether the flight failed, from its start or from one of those beside it, although its scenario
+    /// does not allow it.
     pub fn failed(&self) -> bool {
-        self.outcome.failure.is_some() && !self.scenario.may_fail()
+        let beside = self.spread.as_ref().is_some_and(|spread| spread.failures() > 0);
+        (self.outcome.failure.is_some() || beside) && !self.scenario.may_fail()
     }
 
     /// Name of the variant; of the scenario where it has none.

@@ -4,6 +4,7 @@ use super::article::TABLE;
 use super::sweep::upright_limit;
 use super::{Flown, Group, Story};
 use crate::page::number;
+use crate::sensitivity::STARTS;
 
 /// A table: rows of cells under a head, with what is to be said about it.
 #[derive(Clone, Debug, Default)]
@@ -22,7 +23,10 @@ pub struct Table {
 
 fn cell(flown: &Flown, metric: &str) -> String {
     match &flown.spread {
-        None => flown.outcome.get(metric).map_or_else(|| "-".into(), number),
+        None => {
+            let value = flown.outcome.get(metric).filter(|value| value.is_finite());
+            value.map_or_else(|| "-".into(), number)
+        }
         Some(spread) => spread.range(metric).map_or_else(
             || "-".into(),
             |r| format!("{} [{}..{}]", number(r.median), number(r.min), number(r.max)),
@@ -33,8 +37,11 @@ fn cell(flown: &Flown, metric: &str) -> String {
 /// A row: title, with what happened, and the metrics; a sensitive flight shows its spread.
 pub fn row(flown: &Flown, metrics: &[&str]) -> Vec<String> {
     let mut cells = vec![flown.scenario.title.clone()];
-    if flown.spread.is_some() {
-        cells[0] += " (sensitive)";
+    if let Some(spread) = &flown.spread {
+        cells[0] += &match spread.failures() {
+            0 => " (sensitive)".to_owned(),
+            failed => format!(" (sensitive: {failed} of {STARTS} starts fail)"),
+        };
     }
     if let Some(failure) = flown.outcome.failure {
         cells[0] += &format!(" (failed at {:.2} s: {})", failure.time, failure.cause.describe());

@@ -28,6 +28,7 @@ use stormpetrel_control::registry::Settings;
 use stormpetrel_control::signals::{Model, Thrust};
 use stormpetrel_control::stack::{Exit, Laws, Rhythm, Stack};
 use stormpetrel_control::{choice, options, record};
+use stormpetrel_plant::actuation::propulsion::Supply;
 use stormpetrel_plant::actuation::{Actuate, ActuationSettings};
 use stormpetrel_plant::disturbance::{Site, SourceSettings};
 use stormpetrel_plant::flight::{Flight, Limits};
@@ -261,6 +262,11 @@ impl Scenario {
     /// Whether real rotors with limits fly it.
     pub fn has_rotors(&self) -> bool {
         matches!(self.actuation, ActuationSettings::Rotors(..) | ActuationSettings::Propulsion(..))
+    }
+
+    /// Whether a battery feeds the rotors.
+    pub fn has_battery(&self) -> bool {
+        matches!(&self.actuation, ActuationSettings::Propulsion(_, o) if o.supply == Supply::Battery)
     }
 
     /// Key of all random draws of the flight.

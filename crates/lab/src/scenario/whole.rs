@@ -1,5 +1,6 @@
 //! Rules that look at more than one field of a scenario.
 
+use stormpetrel_control::record::Record as _;
 use stormpetrel_control::registry::Settings as _;
 use stormpetrel_plant::actuation::ActuationSettings;
 use stormpetrel_plant::disturbance::{DisturbanceSettings, SourceSettings};
@@ -31,6 +32,17 @@ const OF_PROPULSION: [&str; 6] = [
     "flapping",
 ];
 
+/// What of the propulsion only a battery asks.
+const OF_BATTERY: [&str; 7] = [
+    "battery_full",
+    "battery_empty",
+    "battery_resistance",
+    "battery_capacity",
+    "battery_charge",
+    "speed_per_volt",
+    "open_circuit",
+];
+
 /// Collects faults with the places of their blocks.
 struct Judge<'a> {
     scenario: &'a Scenario,
@@ -52,6 +64,7 @@ pub(super) fn check(scenario: &Scenario, tree: &Table, broken: &[&str], faults: 
     judge.disturbances();
     judge.timing();
     judge.sensors();
+    judge.start();
 }
 
 impl Judge<'_> {
@@ -190,14 +203,36 @@ impl Judge<'_> {
                 );
                 self.say("actuation", message, "are the two swapped?");
             }
+            if !self.scenario.has_battery() {
+                self.never_asked(
+                    "actuation",
+                    &OF_BATTERY,
+                    "supply is `ideal`",
+                    "add supply = \"battery\", or take it out",
+                );
+            }
             return;
         }
-        for key in OF_PROPULSION {
-            if let Some(place) = self.key("vehicle", key) {
-                let message = format!("`vehicle.{key}` is never asked: actuation is `{actuation}`");
-                let help = "choose actuation = { kind = \"propulsion\" }, or take it out";
-                self.say_at("vehicle", Some(place), message, help);
+        let why = format!("actuation is `{actuation}`");
+        let help = "choose actuation = { kind = \"propulsion\" }, or take it out";
+        self.never_asked("vehicle", &OF_PROPULSION, &why, help);
+    }
+
+    /// Keys that the file gives and nothing asks.
+    fn never_asked(&mut self, block: &str, keys: &[&str], why: &str, help: &str) {
+        for key in keys {
+            if let Some(place) = self.key(block, key) {
+                let message = format!("`{block}.{key}` is never asked: {why}");
+                self.say_at(block, Some(place), message, help);
             }
+        }
+    }
+
+    fn start(&mut self) {
+        if self.faults.is_empty() && !self.scenario.flight().state.finite() {
+            let message = "`start.attitude` = \"flatness\": the reference asks for no thrust at the start, so for no attitude";
+            let help = "write start.attitude = \"level\", or check vehicle.gravity";
+            self.say("start", message.to_owned(), help);
         }
     }
 
@@ -246,6 +281,13 @@ impl Judge<'_> {
                     say(
                         format!("({kind}) has no effect: the vehicle has no drag"),
                         "give vehicle.rotor_drag or vehicle.body_drag, or choose a preset with drag",
+                    );
+                }
+                DisturbanceSettings::Shear(gains, ()) if gains.roughness >= gains.height => {
+                    let (rough, high) = (gains.roughness, gains.height);
+                    say(
+                        format!("has `roughness` = {rough} m, not below `height` = {high} m"),
+                        "are the two swapped? grass has a roughness of some centimetres",
                     );
                 }
                 DisturbanceSettings::SlungMass(..) => hanging += 1,

@@ -4,6 +4,8 @@
 //!   charge' = -I/Q                                                       (2)
 //!   `V_oc` = `V_empty` + (`V_full` - `V_empty`) charge, or the table         (3)
 //!   Omega <= K V                                                         (4)
+//!   `P_max` = `V_oc`^2/(4 R), zero once the charge is                        (5)
+//!   Omega+ <= Omega (`P_max`/P)^(1/3) where P > `P_max`                      (6)
 //!
 //! | symbol | meaning |
 //! |---|---|
@@ -11,8 +13,8 @@
 //! | R, Q | internal resistance, capacity |
 //! | K | rotor speed for each volt at the rotor |
 //!
-//! P is held over a control tick. More power than R lets through, `V_oc`^2/(4 R), counts as that. Source:
-//! the equivalent circuit of a resistance behind a voltage, as in Plett, Battery Management Systems I,
+//! P is held over a control tick. More power than `P_max` is not drawn: the rotors, whose power goes with the
+//! cube of their speed, slow down until they live on it (6). Source: the equivalent circuit of a resistance behind a voltage, as in Plett, Battery Management Systems I,
 //! 2015, chapter 2.
 
 use stormpetrel_control::options::Rows;
@@ -42,6 +44,8 @@ record! {
         voltage: T [V];
         /// Current.
         current: T [A];
+        /// Share of their speed that the power lets the rotors keep (6).
+        share: T [1];
         structure {
             /// Voltage without load by charge; empty for the straight line (3).
             open_circuit: Rows<OpenCircuit>;
@@ -49,7 +53,24 @@ record! {
     }
 }
 
+record! {
+    /// What a gauge at the battery shows.
+    pub struct Gauge {
+        /// Share of charge that is left.
+        charge: T [1];
+        /// Voltage at the rotors.
+        voltage: T [V];
+        /// Current.
+        current: T [A];
+    }
+}
+
 impl<T: Real> Battery<T> {
+    /// What a gauge shows.
+    pub fn gauge(&self) -> Gauge<T> {
+        Gauge { charge: self.charge, voltage: self.voltage, current: self.current }
+    }
+
     /// Gives this mechanical power (W) for `dt` seconds.
     #[inline(always)]
     pub fn draw(&mut self, power: T, dt: T) {
@@ -59,16 +80,15 @@ impl<T: Real> Battery<T> {
             let [voltage] = look_up_lanes(&self.open_circuit, self.charge);
             voltage
         }; // (3)
-        let electrical = power / self.efficiency;
-        let root = (idle.sq() - T::lit(4.0) * self.resistance * electrical).max(T::zero()).sqrt();
+        let asked = power / self.efficiency;
+        let most = idle.sq() / (T::lit(4.0) * self.resistance).max(T::lit(1e-30));
+        let most = T::select(T::zero().lt(self.charge), most, T::zero()); // (5)
+        let drawn = asked.min(most);
+        let short = most.lt(asked);
+        self.share = T::select(short, (most / asked).cbrt(), T::one()); // (6)
+        let root = (idle.sq() - T::lit(4.0) * self.resistance * drawn).max(T::zero()).sqrt();
         self.voltage = (idle + root).half(); // (1)
-        // What the resistance does not let through is not drawn.
-        let most = T::select(
-            T::zero().lt(root),
-            electrical,
-            idle.sq() / (T::lit(4.0) * self.resistance).max(T::lit(1e-30)),
-        );
-        self.current = most / self.voltage.max(T::lit(1e-9));
+        self.current = drawn / self.voltage.max(T::lit(1e-9));
         self.charge = (self.charge - self.current * dt / self.capacity).max(T::zero()); // (2)
     }
 

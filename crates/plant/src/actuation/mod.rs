@@ -11,6 +11,7 @@ use stormpetrel_control::signals::Wrench;
 use stormpetrel_control::stack::{Command, Exit};
 use stormpetrel_control::{record, registry};
 
+use self::battery::Gauge;
 use crate::disturbance::RotorFaults;
 use crate::dynamics::{Held, runge_kutta};
 use crate::state::State;
@@ -66,6 +67,10 @@ pub trait Actuate<T: Real>: Plain<T> {
     #[inline(always)]
     fn saturation(&self) -> T {
         T::zero()
+    }
+    /// What feeds the rotors, where it sags.
+    fn battery(&self) -> Option<Gauge<T>> {
+        None
     }
 }
 
@@ -159,6 +164,9 @@ macro_rules! dispatch_actuate {
             #[inline(always)]
             fn saturation(&self) -> T {
                 match self { $( Self::$variant(x) => x.saturation(), )+ }
+            }
+            fn battery(&self) -> Option<Gauge<T>> {
+                match self { $( Self::$variant(x) => x.battery(), )+ }
             }
         }
     };

@@ -32,7 +32,7 @@ use stormpetrel_control::signals::Wrench;
 use stormpetrel_control::stack::{Command, Exit};
 use stormpetrel_control::{choice, options, record};
 
-use super::battery::Battery;
+use super::battery::{Battery, Gauge};
 use super::curve::{OpenCircuit, RotorCurve, look_up_lanes};
 use super::{Actuate, Load};
 use crate::aerodynamics::through_air;
@@ -122,6 +122,8 @@ record! {
         saturation: T [1];
         /// What feeds them.
         battery: Battery<T> [];
+        /// Speed that the battery's power lets each rotor keep.
+        ceiling: [T; 4] [rad/s];
         structure {
             /// Whether the battery does.
             sags: bool;
@@ -130,6 +132,9 @@ record! {
         }
     }
 }
+
+/// More than any rotor reaches, rad/s.
+const NO_LIMIT: f64 = 1e9;
 
 impl Propulsion<f64> {
     /// At rest.
@@ -150,6 +155,7 @@ impl Propulsion<f64> {
             per_lags: [1.0 / vehicle.motor_lag, 1.0 / fall],
             per_mass: 1.0 / vehicle.mass,
             commanded: [vehicle.hover_speed(); 4],
+            ceiling: [NO_LIMIT; 4],
             battery: Battery {
                 capacity: gains.battery_capacity,
                 full,
@@ -222,11 +228,12 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
     #[inline(always)]
     fn command(&mut self, command: &Command<T>, _: &Vehicle<T>) -> Wrench<T> {
         let allocated = self.allocation.allocate(&command.wrench);
-        let limit = if self.sags { self.battery.limit() } else { T::lit(f64::MAX) };
+        let limit = if self.sags { self.battery.limit() } else { T::lit(NO_LIMIT) };
         let (mut short, mut limited) = ([T::zero(); 4], T::zero());
         for i in 0..4 {
             let asked = allocated.thrusts[i];
             let speed = (asked / self.thrust_coefficient).sqrt();
+            let limit = limit.min(self.ceiling[i]);
             let over = limit.lt(speed);
             let speed = T::select(over, limit, speed);
             let still = speed.lt(self.dead_zone);
@@ -256,6 +263,9 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
         }
         if self.sags {
             self.battery.draw(self.power(state), dt);
+            let (share, none) = (self.battery.share, T::lit(NO_LIMIT));
+            let short = share.lt(T::one());
+            self.ceiling = each(state.rotor_speed, |speed| T::select(short, speed * share, none));
         }
     }
     #[inline(always)]
@@ -325,6 +335,9 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
     #[inline(always)]
     fn saturation(&self) -> T {
         self.saturation
+    }
+    fn battery(&self) -> Option<Gauge<T>> {
+        self.sags.then(|| self.battery.gauge())
     }
 }
 
