@@ -13,7 +13,7 @@ use stormpetrel_plant::disturbance::{
 };
 use stormpetrel_plant::dynamics::{Push, Reciprocals};
 use stormpetrel_plant::flight::Flight;
-use stormpetrel_plant::sling::{Hanging, Sling};
+use stormpetrel_plant::sling::{Hanging, Sling, hang};
 use stormpetrel_plant::state::State;
 use stormpetrel_plant::vehicle::Vehicle;
 use stormpetrel_plant::world::{self as whole, Conditions, Scenery, Whole};
@@ -283,6 +283,29 @@ fn hover_on(actuation: &str, what: DisturbanceSettings, end: f64) -> Flight<f64>
     flight.disturbance[1] = SourceSettings { window, what }.build(&site);
     flight.start(flight.state);
     flight
+}
+
+#[test]
+fn a_cable_goes_slack_and_never_pushes() {
+    let (sling, per_mass) = (Sling { mass: 0.5, length: 2.0, damping: 0.0 }, 1.0 / 1.5);
+    let below = Hanging { place: world(0.0, 0.0, -2.0), velocity: Vec3::zero() };
+    // Thrust accelerates the vehicle upwards by 12 m/s^2: T = (12 m/s^2)/(1/m + 1/m_c) = 4.5 N pulls it down.
+    let pulled = hang(&below, world(0.0, 0.0, 12.0), per_mass, &sling);
+    assert!((pulled.tension - 4.5).abs() < 1e-12 && (pulled.pull.z + 3.0).abs() < 1e-12);
+    assert!(pulled.acceleration.norm() < 1e-12);
+    // Pushed downwards it falls faster than the cargo, which is left to itself.
+    let slack = hang(&below, world(0.0, 0.0, -3.0), per_mass, &sling);
+    assert_eq!((slack.tension, slack.pull.norm()), (0.0, 0.0));
+    assert!((slack.acceleration.z - 3.0).abs() < 1e-12);
+}
+
+#[test]
+fn damping_across_a_cable_takes_the_swing_and_nothing_else() {
+    let sling = Sling { mass: 0.5, length: 2.0, damping: 0.25 };
+    let swinging = Hanging { place: world(0.0, 0.0, -2.0), velocity: world(3.0, 0.0, 0.0) };
+    let hung = hang(&swinging, Vec3::zero(), 1.0 / 1.5, &sling);
+    // c/m_c = 0.5 1/s against the swing; the centripetal acceleration v^2/L towards the vehicle.
+    assert!((hung.acceleration - world(-1.5, 0.0, 4.5)).norm() < 1e-12, "{:?}", hung.acceleration);
 }
 
 #[test]
