@@ -263,6 +263,17 @@ impl Scenario {
         matches!(self.actuation, ActuationSettings::Rotors(..) | ActuationSettings::Propulsion(..))
     }
 
+    /// A line on each disturbance that never acts in this flight.
+    pub fn idle(&self) -> Vec<String> {
+        let duration = self.run.duration;
+        let idle = self.disturbance.iter().enumerate().filter(|(_, s)| !s.window.meets(duration));
+        let line = |(i, source): (usize, &SourceSettings)| {
+            let (kind, start) = (source.name(), source.window.start);
+            format!("`disturbance.{i}` ({kind}) never acts: it starts at {start} s, the flight ends at {duration} s")
+        };
+        idle.map(line).collect()
+    }
+
     /// Key of all random draws of the flight.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // whole and below 2^53
     fn key(&self) -> u64 {
