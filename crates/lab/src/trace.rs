@@ -34,6 +34,8 @@ pub struct Trace {
     pub rotor_speed: [Vec<f64>; 4],
     /// True force of each disturbance, N.
     pub sources: Vec<Axes>,
+    /// True torque of each disturbance, N m.
+    pub source_torques: Vec<Axes>,
     /// Velocity of the air, m/s.
     pub wind: Axes,
     /// Position that the laws are told less the true one, m.
@@ -82,8 +84,11 @@ impl Trace {
             push(&mut self.wind, tick.air.wind);
             push(&mut self.told, tick.estimate.position - tick.position);
             self.sources.resize(sources.len(), Axes::default());
-            for (axes, source) in self.sources.iter_mut().zip(sources) {
-                push(axes, source.force);
+            self.source_torques.resize(sources.len(), Axes::default());
+            let axes = self.sources.iter_mut().zip(&mut self.source_torques);
+            for ((force, torque), source) in axes.zip(sources) {
+                push(force, source.force);
+                push(torque, source.torque);
             }
             for (speeds, w) in self.rotor_speed.iter_mut().zip(tick.rotor_speed) {
                 speeds.push(w);

@@ -34,7 +34,7 @@ pub struct Series<'a> {
     pub x: &'a [f64],
     /// Vertical values, in the unit the panel's `y_label` names; the shorter slice counts.
     pub y: &'a [f64],
-    /// Colour and dash pattern together, as an index that wraps round.
+    /// Colour and dash pattern together, as an index.
     pub style: usize,
     /// How the points are shown.
     pub mark: Mark,

@@ -83,7 +83,7 @@ pub(super) fn disturbance(scenario: &Scenario) -> Drawing {
             .filter(|i| plan.force[*i].iter().flatten().any(|f| *f != 0.0));
         let lines: Vec<_> =
             pushes.map(|i| series(named(i), &plan.time, &plan.force[i][axis], i)).collect();
-        if !lines.is_empty() {
+        if lines.iter().any(|line| line.y.iter().any(|force| *force != 0.0)) {
             panels.push(panel(&format!("Force, {name} axis"), "force (N)", lines));
         }
     }
