@@ -279,10 +279,32 @@ impl Judge<'_> {
             return;
         }
         let step = self.scenario.run.control_step;
-        if let Err(fault) = sensor::check(&self.scenario.sensor, step) {
-            let help = "see `stormpetrel list sensor`; without any sensor the laws see the truth";
-            self.say("sensor", format!("`sensor`: {fault}"), help);
+        match sensor::check(&self.scenario.sensor, step) {
+            Err(fault @ sensor::Fault::Crowded { sensor, .. }) => self.crowded(sensor, &fault),
+            Err(fault) => {
+                let help =
+                    "see `stormpetrel list sensor`; without any sensor the laws see the truth";
+                self.say("sensor", format!("`sensor`: {fault}"), help);
+            }
+            Ok(()) => {}
         }
+    }
+
+    /// A sensor whose samples are under way for too long.
+    fn crowded(&mut self, sensor: usize, fault: &sensor::Fault) {
+        let item = match self.tree.get("sensor").map(|node| &node.value) {
+            Some(Value::List(items)) => items.get(sensor),
+            _ => None,
+        };
+        let given = |key: &str| match item.map(|node| &node.value) {
+            Some(Value::Table(table)) => table.get(key).map(|node| node.place.clone()),
+            _ => None,
+        };
+        let latency = given("latency");
+        let default = if latency.is_none() { "; this latency is the default" } else { "" };
+        let place = latency.or_else(|| item.map(|node| node.place.clone()));
+        let message = format!("`sensor`: {fault}{default}");
+        self.say_at("sensor", place, message, "lower `latency` or `jitter`, or lower `rate_hz`");
     }
 }
 
