@@ -5,6 +5,7 @@ pub mod document;
 pub mod expect;
 mod expectations;
 pub mod fault;
+mod layout;
 mod load;
 pub mod read;
 mod resolve;
@@ -269,7 +270,9 @@ impl Scenario {
         let idle = self.disturbance.iter().enumerate().filter(|(_, s)| !s.window.meets(duration));
         let line = |(i, source): (usize, &SourceSettings)| {
             let (kind, start) = (source.name(), source.window.start);
-            format!("`disturbance.{i}` ({kind}) never acts: it starts at {start} s, the flight ends at {duration} s")
+            format!(
+                "`disturbance.{i}` ({kind}) never acts: it starts at {start} s, the flight ends at {duration} s"
+            )
         };
         idle.map(line).collect()
     }
