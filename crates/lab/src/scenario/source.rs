@@ -1,4 +1,4 @@
-//! Reading a scenario's text from disk, from a pipe or from standard input.
+//! Reading the text of a scenario or of a table from disk.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
@@ -24,7 +24,8 @@ pub(super) fn read(path: &Path, shown: &str) -> Result<String, Faults> {
     if kind.is_dir() {
         return Err(refuse("is a folder", "give the scenario file in it"));
     }
-    if !kind.is_file() && !is_stream(kind) {
+    // A pipe or a device may never end.
+    if !kind.is_file() {
         return Err(refuse("is not a file", "give a scenario file"));
     }
     let mut bytes = Vec::new();
@@ -55,18 +56,6 @@ fn from_disk(path: &Path) -> Result<String, String> {
     }
     let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
     decode(bytes).map_err(|(message, _)| message)
-}
-
-/// Pipes, and terminals and the like behind `/dev/stdin`.
-#[cfg(unix)]
-fn is_stream(kind: std::fs::FileType) -> bool {
-    use std::os::unix::fs::FileTypeExt;
-    kind.is_fifo() || kind.is_char_device()
-}
-
-#[cfg(not(unix))]
-fn is_stream(_: std::fs::FileType) -> bool {
-    false
 }
 
 /// The bytes as a text, or what they are instead.
