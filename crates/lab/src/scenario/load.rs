@@ -222,9 +222,7 @@ pub(super) fn read_scenario(
             _ => {}
         }
     }
-    if let Some(title) = variant.title {
-        title.clone_into(&mut scenario.title);
-    }
+    scenario.entitle(variant.title, variant.name);
     if let Some(table) = variant.expect {
         expect::read(table, "", &mut scenario.expect, &mut faults);
     }
