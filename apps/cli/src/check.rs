@@ -1,5 +1,7 @@
 //! `check`: read, judge, do not fly.
 
+use std::collections::BTreeSet;
+
 use serde_json::{Value, json};
 use stormpetrel_lab::feasible::{Feasibility, Quantity, feasible};
 use stormpetrel_lab::fly::on_all_cores;
@@ -35,9 +37,18 @@ pub fn check(args: &Check, common: &Common) -> Result<(), Failure> {
             let plural = if flights == 1 { "flight" } else { "flights" };
             terminal::say(&format!("{path}: good, {flights} {plural}"));
             print(&file.scenarios, &judged);
+            print_idle(&file.scenarios);
         }
     }
     Ok(())
+}
+
+/// A note for each disturbance that never acts; one that several variants share is said once.
+fn print_idle(scenarios: &[Scenario]) {
+    let notes: BTreeSet<String> = scenarios.iter().flat_map(Scenario::idle).collect();
+    for note in notes {
+        terminal::say(&terminal::hang(&format!("note: {note}"), 6, terminal::width()));
+    }
 }
 
 fn one(path: &str, file: &File, judged: &[Feasibility]) -> Value {

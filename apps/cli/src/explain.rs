@@ -76,7 +76,7 @@ fn as_json(entry: &Entry) -> serde_json::Value {
     let choices: Vec<_> = entry
         .choices
         .iter()
-        .map(|c| json!({ "name": c.name, "meaning": c.doc, "values": c.values.iter().map(|(name, doc)| json!({ "name": name, "meaning": doc })).collect::<Vec<_>>() }))
+        .map(|c| json!({ "name": c.name, "meaning": c.doc, "default": c.default, "values": c.values.iter().map(|(name, doc)| json!({ "name": name, "meaning": doc })).collect::<Vec<_>>() }))
         .collect();
     let tables: Vec<_> = entry
         .tables
@@ -97,7 +97,7 @@ fn print(entry: &Entry) {
         terminal::say(&format!("\n{}", terminal::prose(text.trim_end(), width)));
     }
     if !key.is_empty() {
-        let list = if kind == &"disturbance" {
+        let list = if ["disturbance", "sensor"].contains(kind) {
             format!("[[{kind}]]\n  {key} = \"{name}\"")
         } else {
             format!("{kind} = {{ {key} = \"{name}\" }}")
@@ -105,9 +105,9 @@ fn print(entry: &Entry) {
         terminal::say(&format!("\n{bold}In a scenario{bold:#}\n  {list}"));
     }
     if !choices.is_empty() {
-        terminal::say(&format!("\n{bold}Choices{bold:#} (the first is the default)"));
+        terminal::say(&format!("\n{bold}Choices{bold:#}"));
         for choice in choices {
-            let line = format!("  {}: {}", choice.name, choice.doc);
+            let line = format!("  {} = \"{}\": {}", choice.name, choice.default, choice.doc);
             terminal::say(&terminal::hang(&line, 2, width));
             for (value, doc) in &choice.values {
                 terminal::say(&terminal::hang(&format!("      \"{value}\" {doc}"), 6, width));

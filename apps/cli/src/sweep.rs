@@ -321,7 +321,9 @@ fn print(
         terminal::say(&format!("  {count} failed: {}", cause.describe()));
     }
     let rows = summary.correlations().into_iter().map(|c| {
-        vec![c.input, c.with.to_owned(), format!("{:+.3}", c.rank), c.flights.to_string()]
+        // One of the two never changes: no correlation.
+        let rank = if c.rank.is_finite() { format!("{:+.3}", c.rank) } else { "-".into() };
+        vec![c.input, c.with.to_owned(), rank, c.flights.to_string()]
     });
     let table = Table {
         title: "What goes with what (Spearman's rank correlation)".into(),

@@ -151,7 +151,7 @@ fn what_cannot_be_flown_is_refused_with_advice() {
         FILE.split("[[sweep]]").next().expect("a head").replace("campaign ", "# "),
     )
     .expect("a file");
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 10] = [
         (&["--set", "campaign.flights=1e12"], "must lie in 0 to 1e8"),
         (&["--set", "campaign.flights=1e8", "--set", "run.duration=1e4"], "would take"),
         (&["--shard", "9/8"], "must be I/N"),
@@ -160,6 +160,11 @@ fn what_cannot_be_flown_is_refused_with_advice() {
         (&["--resume"], "there is no campaign to resume"),
         (&["--set", "sweep.0.path=vehicle.mas"], "sweep `vehicle.mas`"),
         (&["--set", "sweep.0.uniform=[0.0, 0.5]"], "must lie in 0.001 to 100 kg"),
+        (&["--set", "sweep.0.uniform=[1, 0]"], "1 is not below 0"),
+        (
+            &["--set", "sweep.0.path=run.substeps", "--set", "sweep.0.uniform=[1, 4]"],
+            "sweep `run.substeps` at 2.1",
+        ),
     ];
     for (more, expected) in cases {
         let begin = Instant::now();
@@ -171,6 +176,27 @@ fn what_cannot_be_flown_is_refused_with_advice() {
         }
         assert!(!bench.path("refused").exists(), "{more:?} leaves nothing");
     }
+}
+
+#[test]
+fn whole_numbers_and_rows_without_a_correlation_are_told_plainly() {
+    let bench = Bench::new();
+    let substeps = ["--set", "sweep.0.path=run.substeps", "--set", "sweep.0.uniform=[1, 4]"];
+    let refused = message(&bench.run("refused", &substeps));
+    assert!(refused.contains("c.toml:14:1") && !refused.contains("--set:"), "{refused}");
+    assert!(refused.contains("with `list` or `grid`"), "{refused}");
+    assert!(
+        !message(&bench.run("refused", &["--set", "sweep.0.uniform=[1, 0]"])).contains("has 0")
+    );
+
+    let mut few = Command::new(env!("CARGO_BIN_EXE_stormpetrel"));
+    few.args(["sweep", "c.toml", "--out", "good", "--set", "campaign.flights=20"]);
+    few.args(["--set", "failure.position_error=100"]).current_dir(bench.folder.path());
+    let output = few.output().expect("the program starts");
+    let shown = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && !shown.contains("NaN"), "{shown}");
+    let success = shown.lines().find(|line| line.contains("success")).expect("a row");
+    assert!(success.split_whitespace().any(|word| word == "-"), "{success}");
 }
 
 #[test]

@@ -534,6 +534,65 @@ fn what_is_no_scenario_file_is_named() {
     ends(&zeros, 2);
 }
 
+/// A point mass that hovers for a short time, with these blocks after the others.
+fn point_mass(folder: &Path, blocks: &str) -> PathBuf {
+    let path = folder.join("mass.toml");
+    let flight = "title = \"a mass\"
+run = { duration = 0.2 }
+vehicle = { model = \"article-corrected\" }
+reference = { shape = \"hover\" }
+position = { law = \"pid\" }
+actuation = { kind = \"wrench\" }
+attitude_reference = { law = \"rotation\" }
+attitude = { law = \"tilt-priority\" }
+rate = { law = \"indi\" }
+";
+    fs::write(&path, format!("{flight}{blocks}")).expect("a file");
+    path
+}
+
+#[test]
+fn check_notes_a_disturbance_that_never_acts() {
+    let folder = TempDir::new().expect("a folder");
+    let step = "[[disturbance]]\nkind = \"step\"\nforce = 1.0\nstart = 50.0\n";
+    let path = point_mass(folder.path(), step);
+    let output = stormpetrel(&["check", path.to_str().expect("a path")]);
+    ends(&output, 0);
+    let note =
+        "note: `disturbance.0` (step) never acts: it starts at 50 s, the flight ends at 0.2 s";
+    assert_eq!(text(&output.stdout).matches(note).count(), 1, "{}", text(&output.stdout));
+}
+
+#[test]
+fn the_figure_of_the_disturbances_shows_what_is_not_zero() {
+    let folder = TempDir::new().expect("a folder");
+    let out = folder.path().join("out");
+    let figure = |blocks: &str| {
+        let path = point_mass(folder.path(), blocks);
+        let (path, out) = (path.to_str().expect("a path"), out.to_str().expect("a path"));
+        ends(&stormpetrel(&["run", path, "--out", out]), 0);
+        fs::read_to_string(Path::new(out).join("sources.svg")).ok()
+    };
+    let pushes =
+        "[[disturbance]]\nkind = \"constant\"\nforce = [0.1, 0, 0]\ntorque = [0, 0, 1e-5]\n";
+    let svg = figure(pushes).expect("a figure");
+    assert!(svg.contains("True force, x axis") && svg.contains("True torque, z axis"));
+    assert!(!svg.contains("True force, y axis") && !svg.contains("True torque, x axis"));
+    let late = "[[disturbance]]\nkind = \"step\"\nforce = 1.0\nstart = 50.0\n";
+    assert!(figure(late).is_none());
+}
+
+#[test]
+fn variants_without_a_title_can_be_told_apart() {
+    let folder = TempDir::new().expect("a folder");
+    let variants = "[[variant]]\nname = \"a\"\n[[variant]]\nname = \"b\"\ntitle = \"other\"\n";
+    let path = point_mass(folder.path(), variants);
+    let output = stormpetrel(&["check", "--json", path.to_str().expect("a path")]);
+    let all: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(all[0]["resolved"][0]["title"], "a mass (a)");
+    assert_eq!(all[0]["resolved"][1]["title"], "other");
+}
+
 #[test]
 fn each_kind_is_listed_once_and_names_are_found_in_any_case() {
     let list = text(&stormpetrel(&["list"]).stdout);

@@ -36,8 +36,10 @@ pub struct Choice {
     pub name: &'static str,
     /// Meaning.
     pub doc: &'static str,
-    /// Alternatives with their meanings; the first is the default.
+    /// Alternatives with their meanings.
     pub values: Vec<(&'static str, &'static str)>,
+    /// The alternative that is taken where the file does not choose.
+    pub default: &'static str,
 }
 
 /// A table that a file brings along.
@@ -134,7 +136,8 @@ impl OptionVisitor for Block {
         current: usize,
     ) -> usize {
         let values = names.iter().zip(docs).map(|(name, doc)| (*name, doc.trim())).collect();
-        self.choices.push(Choice { name, doc: doc.trim(), values });
+        let default = names.get(current).copied().unwrap_or_default();
+        self.choices.push(Choice { name, doc: doc.trim(), values, default });
         current
     }
 
@@ -151,16 +154,38 @@ impl OptionVisitor for Block {
     }
 }
 
-/// The module documentation at the head of a source text.
+/// The module documentation at the head of a source text, without links.
 fn module_doc(source: &str) -> String {
     let lines = source.lines().take_while(|line| line.starts_with("//!"));
     lines.map(|line| line.trim_start_matches("//!").strip_prefix(' ').unwrap_or("")).fold(
         String::new(),
         |mut text, line| {
-            let _ = writeln!(text, "{line}");
+            let _ = writeln!(text, "{}", without_links(line));
             text
         },
     )
+}
+
+/// A line in which [`name`] and [`name`](path) are `name`.
+fn without_links(line: &str) -> String {
+    let mut text = String::new();
+    let mut rest = line;
+    while let Some((before, link)) = rest.split_once("[`") {
+        text.push_str(before);
+        match link.split_once("`]") {
+            Some((name, after)) if !name.contains('`') => {
+                let name = name.trim_start_matches("crate::").trim_start_matches("super::");
+                let _ = write!(text, "`{name}`");
+                let target = after.strip_prefix('(').and_then(|path| path.split_once(')'));
+                rest = target.map_or(after, |(_, after)| after);
+            }
+            _ => {
+                text.push_str("[`");
+                rest = link;
+            }
+        }
+    }
+    text + rest
 }
 
 impl Collector {
@@ -284,4 +309,38 @@ fn rotors(vehicle: &Vehicle<f64>) -> String {
         places.join("\n"),
         equations.join("\n")
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_become_names() {
+        assert_eq!(without_links("as in [`triad`](super::triad), (1)"), "as in `triad`, (1)");
+        assert_eq!(without_links("[`A`] and [`crate::b`], x[3]"), "`A` and `b`, x[3]");
+        assert_eq!(without_links("[`a`, `b`]"), "[`a`, `b`]");
+    }
+
+    #[test]
+    fn no_text_has_links_or_points_into_the_source() {
+        for Entry { name, text, .. } in catalogue() {
+            for syntax in ["](", "[`", "::"] {
+                assert!(!text.contains(syntax), "{name}: {syntax} in {text}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_preset_has_its_own_default_layout() {
+        let all = catalogue();
+        let layout = |name: &str| {
+            let entry = all.iter().find(|e| e.kind == "vehicle" && e.name == name);
+            entry.and_then(|e| e.choices.first()).map(|choice| choice.default)
+        };
+        assert_eq!(layout("x500"), Some("px4-x"));
+        assert_eq!(layout("hummingbird"), Some("px4-x"));
+        assert_eq!(layout("article"), Some("article-plus"));
+        assert_eq!(layout("racer"), Some("free"));
+    }
 }

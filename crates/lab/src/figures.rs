@@ -90,32 +90,53 @@ pub fn disturbance(title: &str, trace: &Trace) -> Drawing {
     Drawing { name: "disturbance", svg: figure.svg() }
 }
 
-/// What each disturbance does by itself, and the wind.
-fn sources(scenario: &Scenario, trace: &Trace) -> Drawing {
-    let mut panels: Vec<_> = AXES
-        .iter()
-        .enumerate()
-        .map(|(axis, name)| {
-            let lines = trace.sources.iter().zip(&scenario.disturbance).enumerate();
-            let lines = lines.map(|(i, (force, source))| {
-                series(format!("{i} {}", source.name()), &trace.time, &force[axis], i)
-            });
-            panel(&format!("True force, {name} axis"), "force (N)", lines.collect())
-        })
-        .collect();
-    let windy = trace.wind.iter().flatten().any(|w| *w != 0.0);
-    if windy {
+/// Whether a curve is anything but zero throughout.
+fn moves(curve: &[f64]) -> bool {
+    curve.iter().any(|value| *value != 0.0)
+}
+
+/// A panel for each axis along which some disturbance does something.
+fn by_axis<'a>(
+    scenario: &Scenario,
+    trace: &'a Trace,
+    what: &'a [Axes],
+    (name, unit): (&str, &str),
+) -> Vec<Panel<'a>> {
+    let mut panels = Vec::new();
+    for (axis, letter) in AXES.iter().enumerate() {
+        if !what.iter().any(|axes| moves(&axes[axis])) {
+            continue;
+        }
+        let lines = what.iter().zip(&scenario.disturbance).enumerate();
+        let lines = lines.map(|(i, (axes, source))| {
+            series(format!("{i} {}", source.name()), &trace.time, &axes[axis], i)
+        });
+        panels.push(panel(&format!("True {name}, {letter} axis"), unit, lines.collect()));
+    }
+    panels
+}
+
+/// What each disturbance does by itself, and the wind; nothing where none does anything.
+fn sources(scenario: &Scenario, trace: &Trace) -> Option<Drawing> {
+    let mut panels = by_axis(scenario, trace, &trace.sources, ("force", "force (N)"));
+    let torque = ("torque", "torque (N m)");
+    panels.extend(by_axis(scenario, trace, &trace.source_torques, torque));
+    if trace.wind.iter().any(|axis| moves(axis)) {
         let winds = AXES.iter().enumerate();
         let winds = winds.map(|(i, axis)| series(*axis, &trace.time, &trace.wind[i], i));
         panels.push(panel("Wind", "velocity (m/s)", winds.collect()));
     }
-    let title = &scenario.title;
+    if panels.is_empty() {
+        return None;
+    }
     let figure = Figure {
-        title: format!("{title}: what disturbs"),
-        description: "True force of each disturbance along each world axis, and the wind.".into(),
+        title: format!("{}: what disturbs", scenario.title),
+        description: "True force of each disturbance along the world axes, its torque about the \
+                      body axes, and the wind."
+            .into(),
         panels,
     };
-    Drawing { name: "sources", svg: figure.svg() }
+    Some(Drawing { name: "sources", svg: figure.svg() })
 }
 
 /// How wrong the laws are told.
@@ -193,9 +214,7 @@ pub fn all(scenario: &Scenario, trace: &Trace) -> Vec<Drawing> {
         disturbance(title, trace),
         commands(title, trace),
     ];
-    if !scenario.disturbance.is_empty() {
-        drawings.push(sources(scenario, trace));
-    }
+    drawings.extend(sources(scenario, trace));
     if !scenario.sensor.is_empty() {
         drawings.push(sensing(scenario, trace));
     }

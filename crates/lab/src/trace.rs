@@ -38,6 +38,8 @@ pub struct Trace {
     pub sources: Vec<Axes>,
     /// Charge (1), voltage (V) and current (A) of the battery; empty without one.
     pub battery: [Vec<f64>; 3],
+    /// True torque of each disturbance, N m.
+    pub source_torques: Vec<Axes>,
     /// Velocity of the air, m/s.
     pub wind: Axes,
     /// Position that the laws are told less the true one, m.
@@ -86,8 +88,11 @@ impl Trace {
             push(&mut self.wind, tick.air.wind);
             push(&mut self.told, tick.estimate.position - tick.position);
             self.sources.resize(sources.len(), Axes::default());
-            for (axes, source) in self.sources.iter_mut().zip(sources) {
-                push(axes, source.force);
+            self.source_torques.resize(sources.len(), Axes::default());
+            let axes = self.sources.iter_mut().zip(&mut self.source_torques);
+            for ((force, torque), source) in axes.zip(sources) {
+                push(force, source.force);
+                push(torque, source.torque);
             }
             if let Some(Gauge { charge, voltage, current }) = battery {
                 for (line, x) in self.battery.iter_mut().zip([charge, voltage, current]) {

@@ -191,3 +191,30 @@ fn a_preview_has_every_figure_and_one_page() {
     assert_eq!(page.matches("<svg").count(), 4);
     assert!(page.contains("a &lt; b") && page.ends_with("</html>\n") && !page.contains("src="));
 }
+
+#[test]
+fn a_preview_shows_of_a_disturbance_what_lies_in_the_flight() {
+    let steps = |windows: &str| {
+        let text = format!(
+            "run = {{ duration = 10.0 }}
+vehicle = {{ model = \"article-corrected\" }}
+reference = {{ shape = \"hover\" }}
+position = {{ law = \"pid\" }}
+actuation = {{ kind = \"thrust-vector\" }}
+{windows}"
+        );
+        let file = load_text("test", "test.toml", text, &[]).unwrap_or_else(|f| panic!("{f}"));
+        file.scenarios.into_iter().next().expect("a flight")
+    };
+    let late = "[[disturbance]]\nkind = \"step\"\nforce = 1.0\nstart = 50.0\n";
+    let long = "[[disturbance]]\nkind = \"step\"\nforce = 1.0\nstart = 4.0\nend = 90.0\n";
+    let both = steps(&format!("{late}{long}"));
+    let idle = "`disturbance.0` (step) never acts: it starts at 50 s, the flight ends at 10 s";
+    assert_eq!(both.idle(), [idle]);
+    let drawn = drawings(&both);
+    let drawn = drawn.iter().find(|d| d.name == "preview-disturbance").expect("a figure");
+    assert!(drawn.svg.contains(">0 step (not in this flight)<") && drawn.svg.contains(">1 step<"));
+    assert!(drawn.svg.contains(">10<") && !drawn.svg.contains(">20<"), "the flight ends at 10 s");
+    assert!(drawn.svg.contains(">disturbance<") && !drawn.svg.contains(">number<"));
+    assert!(steps(long).idle().is_empty());
+}

@@ -284,14 +284,22 @@ fn rotors_settle_at_the_power_that_the_resistance_lets_through() {
     let options = Options { supply: Supply::Battery, ..Options::default() };
     let mut actuation = built(&vehicle, gains, options);
     let mut state = at_speed(1458.0);
+    let most = 12.0 * 12.0 / 4.0;
+    let asked = 4.0 * vehicle.drag_coefficient * 1458.0f64.powi(3) / 0.5;
+    actuation.suffer(&RotorFaults::none(), &state, 1e-3);
+    actuation.command(&asking(6.0), &vehicle);
+    let Actuation::Propulsion(rotors) = &actuation else { panic!("propulsion") };
+    let want = 1458.0 * (most / asked).powf(1.0 / 3.0);
+    assert!(
+        (rotors.commanded[1] / want - 1.0).abs() < 1e-12,
+        "power goes with the cube of the speed"
+    );
     for _ in 0..2000 {
         actuation.command(&asking(6.0), &vehicle);
         actuation.suffer(&RotorFaults::none(), &state, 1e-3);
         state = moved(state, 1e-3, &vehicle, &mut actuation, &calm(&vehicle));
     }
-    let most = 12.0 * 12.0 / 4.0;
     let power = 4.0 * vehicle.drag_coefficient * state.rotor_speed[0].powi(3) / 0.5;
-    let asked = 4.0 * vehicle.drag_coefficient * 1458.0f64.powi(3) / 0.5;
     assert!(asked > 1.2 * most && (power / most - 1.0).abs() < 0.03, "{power} of {most} W");
     let Actuation::Propulsion(rotors) = &actuation else { panic!("propulsion") };
     assert!(rotors.battery.voltage * rotors.battery.current <= most * (1.0 + 1e-12));

@@ -597,11 +597,12 @@ fn a_set_of_sensors_is_checked_when_it_is_loaded() {
     };
     assert_eq!(check(&late(0.07, 0.0), 1e-3), Ok(()));
     assert_eq!(check(&late(0.05, 0.02), 1e-3), Ok(()));
-    let fault = Fault::Crowded { sensor: 3, kind: "motion-capture", longest: 0.07 };
+    let late_by = [0.06, 0.011];
+    let fault = Fault::Crowded { sensor: 3, kind: "motion-capture", late: late_by, longest: 0.07 };
     assert_eq!(check(&late(0.06, 0.011), 1e-3), Err(fault));
     assert_eq!(
         fault.to_string(),
-        "sensor 3 (motion-capture): latency and jitter together must not exceed 7 sampling periods, here 0.07 s"
+        "sensor 3 (motion-capture): latency 0.06 s and jitter 0.011 s together must not exceed 7 sampling periods, here 0.07 s"
     );
     // What passes the check loses nothing.
     let timing = Timing { rate_hz: 100.0, latency: 0.04, jitter: 0.03, dropout: 0.0 };

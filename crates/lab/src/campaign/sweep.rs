@@ -41,6 +41,9 @@ pub struct Sweep {
 /// Probability below four standard deviations.
 const FOUR_SIGMA: f64 = 3.167_124_183_311_992e-5;
 
+/// A probability that makes no whole number out of ordinary bounds.
+const BETWEEN: f64 = 0.367_879_441_171_442_3;
+
 impl Draw {
     /// How many values there are, where they are counted and not drawn.
     pub fn count(&self) -> Option<u64> {
@@ -80,14 +83,19 @@ impl Draw {
         }
     }
 
-    /// The extreme values, to be checked beforehand.
+    /// The extreme values, to be checked beforehand, and one between them: a setting that takes whole
+    /// numbers only may take the extremes and not what lies between.
     pub fn extremes(&self) -> Vec<Input> {
+        let between = Input::Number(self.at(BETWEEN));
         match self {
-            Self::Uniform(low, high) | Self::LogUniform(low, high) | Self::Grid(low, high, _) => {
-                vec![Input::Number(*low), Input::Number(*high)]
+            Self::Uniform(low, high) | Self::LogUniform(low, high) => {
+                vec![Input::Number(*low), Input::Number(*high), between]
+            }
+            Self::Grid(low, high, _) => {
+                vec![Input::Number(*low), Input::Number(*high), self.cell(1)]
             }
             Self::Normal(mean, sigma) => {
-                vec![Input::Number(mean - 4.0 * sigma), Input::Number(mean + 4.0 * sigma)]
+                vec![Input::Number(mean - 4.0 * sigma), Input::Number(mean + 4.0 * sigma), between]
             }
             Self::List(values) => values.clone(),
         }
@@ -144,6 +152,7 @@ pub fn read(node: &Node, faults: &mut Vec<Fault>) -> Vec<Sweep> {
 
 fn read_one(table: &Table, place: &Place, faults: &mut Vec<Fault>) -> Option<Sweep> {
     let (mut paths, mut name, mut relative, mut draws) = (Vec::new(), None, false, Vec::new());
+    let mut given = 0;
     for Entry { key, node, place, .. } in &table.0 {
         match (key.as_str(), &node.value) {
             ("path", Value::Text(path)) => paths.push(path.clone()),
@@ -157,9 +166,11 @@ fn read_one(table: &Table, place: &Place, faults: &mut Vec<Fault>) -> Option<Swe
                 faults.push(Fault::new(&node.place, "`sweep.relative` must be true or false"));
             }
             (known, Value::List(items)) if KEYS.contains(&known) => {
+                given += 1;
                 draws.extend(draw(known, items, &node.place, faults));
             }
             (known, _) if KEYS.contains(&known) => {
+                given += 1;
                 let message = format!("`sweep.{known}` must be a list");
                 faults.push(Fault::new(&node.place, message).help(shape(known)));
             }
@@ -171,8 +182,8 @@ fn read_one(table: &Table, place: &Place, faults: &mut Vec<Fault>) -> Option<Swe
     if paths.is_empty() {
         faults.push(Fault::new(place, "a sweep has no path").help("add path = \"vehicle.mass\""));
     }
-    if draws.len() != 1 {
-        let message = format!("a sweep has {} distributions: it takes one", draws.len());
+    if given != 1 {
+        let message = format!("a sweep has {given} distributions: it takes one");
         let help = "give one of uniform, log_uniform, normal, grid, list";
         faults.push(Fault::new(place, message).help(help));
     }

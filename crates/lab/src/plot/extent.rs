@@ -29,7 +29,8 @@ pub(super) fn ranges(panel: &Panel<'_>) -> (Range, Range) {
     let symbols = |s: &Series<'_>| s.mark != Mark::Line || !s.spans.is_empty();
     let margin = if panel.series.iter().any(symbols) { 0.02 } else { 0.0 };
     let x = Range::settled(x, panel.x_scale, margin);
-    let ends = panel.y_range.map(|(lo, hi)| [lo, hi].map(|v| unit(v, panel.scale)));
+    let rows = (panel.y_rows > 0).then(|| (-0.6, panel.y_rows as f64 - 0.4));
+    let ends = rows.or(panel.y_range).map(|(lo, hi)| [lo, hi].map(|v| unit(v, panel.scale)));
     let given = ends.and_then(|ends| Range::of(ends.into_iter())).filter(|r| r.span() > 0.0);
     (x, given.unwrap_or_else(|| height(panel, pairs().map(|p| p.1))))
 }

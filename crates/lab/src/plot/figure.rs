@@ -34,7 +34,7 @@ pub struct Series<'a> {
     pub x: &'a [f64],
     /// Vertical values, in the unit the panel's `y_label` names; the shorter slice counts.
     pub y: &'a [f64],
-    /// Colour and dash pattern together, as an index that wraps round.
+    /// Colour and dash pattern together, as an index.
     pub style: usize,
     /// How the points are shown.
     pub mark: Mark,
@@ -81,6 +81,8 @@ pub struct Panel<'a> {
     pub x_range: Option<(f64, f64)>,
     /// Ends of the vertical axis, around everything drawn; without them the values decide.
     pub y_range: Option<(f64, f64)>,
+    /// Number of rows that the vertical axis counts from zero in place of a scale; 0 for a scale.
+    pub y_rows: usize,
     /// Columns, drawn behind the curves.
     pub columns: Vec<Column>,
     /// The curves, drawn in this order.
@@ -148,7 +150,10 @@ impl<'a> Prepared<'a> {
             x,
             y,
             x_ticks: Ticks::new(x, panel.x_scale, 9),
-            y_ticks: Ticks::new(y, scale, if height > 200.0 { 6 } else { 4 }),
+            y_ticks: match panel.y_rows {
+                0 => Ticks::new(y, scale, if height > 200.0 { 6 } else { 4 }),
+                rows => Ticks::rows(rows),
+            },
             marks: panel.limits.iter().filter_map(|l| mark(l, y, scale)).collect(),
         }
     }

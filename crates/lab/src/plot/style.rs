@@ -26,18 +26,24 @@ const PALETTE: [(&str, &str); 7] = [
     ("#000000", "1.5 2.5"),
 ];
 
-/// Colour and dash pattern of a style; the index wraps round.
+/// Colour and dash pattern of a style. The colours wrap round, each time with the dashes of a neighbour,
+/// so that 49 styles differ.
 pub(super) fn look(style: usize) -> (&'static str, &'static str) {
-    PALETTE.get(style % PALETTE.len()).copied().unwrap_or(("#000000", ""))
+    let pick = |at: usize| PALETTE.get(at % PALETTE.len()).copied().unwrap_or(("#000000", ""));
+    (pick(style).0, pick(style + style / PALETTE.len()).1)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
 
     #[test]
     fn styles_wrap_round_and_differ() {
-        assert_eq!(look(0), look(7));
         assert!((1..7).all(|i| look(i).0 != look(0).0 && look(i).1 != look(0).1));
+        assert_eq!(look(0).0, look(7).0);
+        assert_eq!((0..49).map(look).collect::<BTreeSet<_>>().len(), 49);
+        assert_eq!(look(0), look(49));
     }
 }

@@ -29,6 +29,12 @@ impl Ticks {
             Scale::Log => logarithmic(range),
         }
     }
+
+    /// One tick for each of so many rows, numbered from zero.
+    pub fn rows(count: usize) -> Self {
+        let major = (0..count).map(|row| Tick { at: row as f64, label: row.to_string() });
+        Self { major: major.collect(), minor: Vec::new(), factor: String::new() }
+    }
 }
 
 /// `mantissa`·10^`exponent` rounded once, which multiplying by a computed power would not be.
@@ -122,6 +128,12 @@ mod tests {
             ["\u{2212}1.0", "\u{2212}0.5", "0.0", "0.5", "1.0"]
         );
         assert_eq!(labels(0.7, 1.9, Scale::Linear, 3), ["1.0", "1.5"]);
+    }
+
+    #[test]
+    fn rows_are_counted_from_zero() {
+        let labels: Vec<_> = Ticks::rows(3).major.into_iter().map(|t| t.label).collect();
+        assert_eq!(labels, ["0", "1", "2"]);
     }
 
     #[test]

@@ -74,13 +74,16 @@ pub(super) fn disturbance(scenario: &Scenario) -> Drawing {
     let plan = plan(scenario);
     let named = |i: usize| format!("{i} {}", scenario.disturbance.get(i).map_or("", |s| s.name()));
     let windows = windows(scenario);
-    let mut panels = vec![strokes("When it acts", &windows)];
+    let duration = scenario.run.duration;
+    let mut acts = strokes("When it acts", "disturbance", &windows);
+    acts.x_range = Some((0.0, duration));
+    let mut panels = vec![acts];
     for (axis, name) in ["x", "y", "z"].iter().enumerate() {
         let pushes = (0..scenario.disturbance.len())
             .filter(|i| plan.force[*i].iter().flatten().any(|f| *f != 0.0));
         let lines: Vec<_> =
             pushes.map(|i| series(named(i), &plan.time, &plan.force[i][axis], i)).collect();
-        if !lines.is_empty() {
+        if lines.iter().any(|line| line.y.iter().any(|force| *force != 0.0)) {
             panels.push(panel(&format!("Force, {name} axis"), "force (N)", lines));
         }
     }
@@ -101,17 +104,23 @@ pub(super) fn disturbance(scenario: &Scenario) -> Drawing {
 /// A name and the line that belongs to it.
 type Stroke = (String, Vec<f64>, Vec<f64>);
 
-/// A panel of strokes in numbered rows.
-fn strokes<'a>(title: &str, strokes: &'a [Stroke]) -> Panel<'a> {
+/// A panel of strokes in rows numbered from zero; `what` is numbered.
+fn strokes<'a>(title: &str, what: &str, strokes: &'a [Stroke]) -> Panel<'a> {
     let lines = strokes.iter().enumerate();
-    panel(title, "number", lines.map(|(i, (name, x, y))| series(name, x, y, i)).collect())
+    let lines = lines.map(|(i, (name, x, y))| series(name, x, y, i)).collect();
+    Panel { y_rows: strokes.len(), ..panel(title, what, lines) }
 }
 
-/// From onset to end of each disturbance, one line each.
+/// From onset to end of each disturbance within the flight, one line each.
 fn windows(scenario: &Scenario) -> Vec<Stroke> {
+    let duration = scenario.run.duration;
     let one = |(i, source): (usize, &SourceSettings)| {
-        let until = Real::min(source.window.end, scenario.run.duration);
-        (format!("{i} {}", source.name()), vec![source.window.start, until], vec![i as f64; 2])
+        let (name, window) = (source.name(), source.window);
+        if !window.meets(duration) {
+            return (format!("{i} {name} (not in this flight)"), Vec::new(), Vec::new());
+        }
+        let until = Real::min(window.end, duration);
+        (format!("{i} {name}"), vec![window.start, until], vec![i as f64; 2])
     };
     scenario.disturbance.iter().enumerate().map(one).collect()
 }
@@ -145,7 +154,7 @@ pub(super) fn sensors(scenario: &Scenario) -> Drawing {
     let figure = Figure {
         title: format!("{}: when sensors tell", scenario.title),
         description: "A stroke for each sample, from when it is taken to when it is there.".into(),
-        panels: vec![strokes("Samples of the first half second", &samples)],
+        panels: vec![strokes("Samples of the first half second", "sensor", &samples)],
     };
     Drawing { name: "preview-sensors", svg: figure.svg() }
 }

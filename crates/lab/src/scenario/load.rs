@@ -11,7 +11,7 @@ use stormpetrel_plant::disturbance::MOST;
 use super::document::{Entry, Node, Table, Value, missing_items, not_to_set, parse, parse_set};
 use super::fault::{Fault, Faults, Place, Source};
 use super::read::{Reader, unknown, wrong_type};
-use super::{ATTITUDE_LEVELS, BlockVisitor, Scenario, expect, expectations, whole};
+use super::{ATTITUDE_LEVELS, BlockVisitor, Scenario, expect, expectations, layout, whole};
 use crate::campaign::{plan, sweep};
 use crate::curve;
 
@@ -199,7 +199,8 @@ pub(super) fn read_scenario(
         broken: Vec::new(),
     };
     scenario.blocks(&mut loader);
-    let Loader { known, mut faults, broken, .. } = loader;
+    let Loader { known, mut faults, mut broken, .. } = loader;
+    layout::check(&scenario.vehicle.vehicle, tree, &mut broken, &mut faults);
     if !broken.contains(&"reference") {
         faults.extend(curve::prepare(&mut scenario.reference).err().map(|why| unfit(&why, tree)));
     }
@@ -221,9 +222,7 @@ pub(super) fn read_scenario(
             _ => {}
         }
     }
-    if let Some(title) = variant.title {
-        title.clone_into(&mut scenario.title);
-    }
+    scenario.entitle(variant.title, variant.name);
     if let Some(table) = variant.expect {
         expect::read(table, "", &mut scenario.expect, &mut faults);
     }

@@ -5,6 +5,7 @@ pub mod document;
 pub mod expect;
 mod expectations;
 pub mod fault;
+mod layout;
 mod load;
 pub mod read;
 mod resolve;
@@ -267,6 +268,19 @@ impl Scenario {
     /// Whether a battery feeds the rotors.
     pub fn has_battery(&self) -> bool {
         matches!(&self.actuation, ActuationSettings::Propulsion(_, o) if o.supply == Supply::Battery)
+    }
+
+    /// A line on each disturbance that never acts in this flight.
+    pub fn idle(&self) -> Vec<String> {
+        let duration = self.run.duration;
+        let idle = self.disturbance.iter().enumerate().filter(|(_, s)| !s.window.meets(duration));
+        let line = |(i, source): (usize, &SourceSettings)| {
+            let (kind, start) = (source.name(), source.window.start);
+            format!(
+                "`disturbance.{i}` ({kind}) never acts: it starts at {start} s, the flight ends at {duration} s"
+            )
+        };
+        idle.map(line).collect()
     }
 
     /// Key of all random draws of the flight.

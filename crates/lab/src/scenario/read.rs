@@ -206,7 +206,12 @@ pub(super) fn refuse(
         return Some((format!("`{field}` = {x}: must be a finite number from {range}"), None));
     }
     if unit == "count" && !whole && x.fract() != 0.0 {
-        return Some((format!("`{field}` = {x}: must be a whole number"), None));
+        let help = format!(
+            "write {} or {}; a [[sweep]] gives whole numbers with `list` or `grid`",
+            x.floor(),
+            x.ceil()
+        );
+        return Some((format!("`{field}` = {x}: must be a whole number"), Some(help)));
     }
     if x >= lo && x <= hi {
         return None;

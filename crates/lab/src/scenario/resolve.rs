@@ -45,6 +45,16 @@ impl Scenario {
         }
     }
 
+    /// Takes the title of a variant; without one its name beside the file's tells it apart from the others.
+    pub(super) fn entitle(&mut self, title: Option<&str>, name: Option<&str>) {
+        match (title, name) {
+            (Some(title), _) => title.clone_into(&mut self.title),
+            (None, Some(name)) if self.title.is_empty() => name.clone_into(&mut self.title),
+            (None, Some(name)) => self.title = format!("{} ({name})", self.title),
+            (None, None) => {}
+        }
+    }
+
     /// A scenario with every default, flown by nobody: what catalogue and schema walk over.
     pub fn defaults() -> Self {
         Self::blank(String::new())

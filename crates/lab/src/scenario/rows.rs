@@ -31,10 +31,10 @@ pub(super) fn read(
             return None;
         }
     };
-    let (fewest, most) = shape.rows;
-    if faults.len() == before && !(fewest..=most).contains(&rows.len()) {
-        let message = format!("`{field}` has {} rows: must have {fewest} to {most}", rows.len());
-        faults.push(Fault::new(&node.place, message));
+    if faults.len() == before
+        && let Some(message) = check_count(rows.len(), file, shape.rows)
+    {
+        faults.push(Fault::new(&node.place, format!("`{field}`{message}")));
     }
     for (i, row) in rows.iter().enumerate() {
         check_row(field, i, row, shape.columns, faults);
@@ -54,6 +54,22 @@ pub(super) fn how(field: &str, shape: &Shape) -> String {
     let names = names.join(", ");
     let key = field.rsplit('.').next().unwrap_or(field);
     format!("write {key} = [[{names}], ...], or the name of a CSV file with the head {names}")
+}
+
+/// What is wrong with a number of rows. Of a file that is too long only the first rows are counted.
+fn check_count(count: usize, file: &str, (fewest, most): (usize, usize)) -> Option<String> {
+    if count > 0 && (fewest..=most).contains(&count) {
+        return None;
+    }
+    let of = if file.is_empty() { String::new() } else { format!(" = \"{file}\"") };
+    let plural = if count == 1 { "row" } else { "rows" };
+    Some(match count {
+        0 if fewest == 0 => format!("{of} has 0 rows: leave it out for none"),
+        _ if count > most && !file.is_empty() => {
+            format!("{of} has more than {most} rows: must have {fewest} to {most}")
+        }
+        _ => format!("{of} has {count} {plural}: must have {fewest} to {most}"),
+    })
 }
 
 fn inline(field: &str, items: &[Node], shape: &Shape, faults: &mut Vec<Fault>) -> Vec<Row> {
@@ -113,13 +129,38 @@ fn from_file(
     parse(&Arc::new(Source { name: shown, text }), shape, faults)
 }
 
+/// What some programs write before a text in UTF-8.
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
+/// Which other separator than the comma a line has, if it has no comma.
+fn separated(line: &str) -> Option<String> {
+    let other = [(';', "`;`"), ('\t', "tabs")].into_iter().find(|(c, _)| line.trim().contains(*c));
+    let (_, shown) = other.filter(|_| !line.contains(','))?;
+    Some(format!("values are separated by {shown}: a table is separated by commas"))
+}
+
+/// A first line that does not name the columns.
+fn strange_head(place: &Place, line: &str, wanted: &[&str]) -> Fault {
+    let must = format!("the first line must be {}", wanted.join(","));
+    if let Some(message) = separated(line) {
+        return Fault::new(place, message).help(must);
+    }
+    if line.contains(['"', '\'']) {
+        let message = "names are in quotes: a table has them without";
+        return Fault::new(place, message).help(must);
+    }
+    Fault::new(place, must).help("it names the columns, in SI units, separated by commas")
+}
+
 /// The rows of a CSV text. The first line names the columns; empty lines and lines that begin with `#`
 /// do not count.
 fn parse(source: &Arc<Source>, shape: &Shape, faults: &mut Vec<Fault>) -> Vec<Row> {
     let wanted: Vec<&str> = shape.columns.iter().map(|column| column.name).collect();
     let mut rows = Vec::new();
-    let (mut start, mut head) = (0, false);
-    for line in source.text.split_inclusive('\n') {
+    let mut head = false;
+    let text = source.text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&source.text);
+    let mut start = source.text.len() - text.len();
+    for line in text.split_inclusive('\n') {
         let span = start..start + line.trim_end().len();
         start += line.len();
         if line.trim().is_empty() || line.starts_with('#') {
@@ -130,15 +171,16 @@ fn parse(source: &Arc<Source>, shape: &Shape, faults: &mut Vec<Fault>) -> Vec<Ro
         if !head {
             head = true;
             if cells.iter().map(|cell| cell.trim()).ne(wanted.iter().copied()) {
-                let message = format!("the first line must be {}", wanted.join(","));
-                let help = "it names the columns, in SI units, separated by commas";
-                faults.push(Fault::new(&place(span), message).help(help));
+                faults.push(strange_head(&place(span), line, &wanted));
                 return rows;
             }
             continue;
         }
         if cells.len() != wanted.len() {
-            let message = format!("{} values: this table has {}", cells.len(), wanted.len());
+            let message = separated(line).unwrap_or_else(|| {
+                let plural = if cells.len() == 1 { "value" } else { "values" };
+                format!("{} {plural}: this table has {}", cells.len(), wanted.len())
+            });
             let help = format!("one value for each of {}, with a point", wanted.join(", "));
             faults.push(Fault::new(&place(span), message).help(help));
             return rows;
@@ -150,7 +192,11 @@ fn parse(source: &Arc<Source>, shape: &Shape, faults: &mut Vec<Fault>) -> Vec<Ro
             at += cell.len() + 1;
             let Ok(x) = cell.trim().parse::<f64>() else {
                 let message = format!("`{column}` = {:?}: must be a number", cell.trim());
-                let help = "a gap in a recording must be filled or cut out";
+                let help = if cell.contains('"') {
+                    "write numbers without quotes"
+                } else {
+                    "a gap in a recording must be filled or cut out"
+                };
                 faults.push(Fault::new(&here, message).help(help));
                 return rows;
             };
@@ -201,4 +247,48 @@ fn kept_name(name: &str) -> &'static str {
     static NAMES: Mutex<BTreeMap<String, &'static str>> = Mutex::new(BTreeMap::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
     names.entry(name.to_owned()).or_insert_with(|| String::leak(name.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COLUMN: Column = Column { name: "x", unit: "m", range: (0.0, 9.0) };
+    const SHAPE: Shape = Shape { columns: &[COLUMN, COLUMN], rows: (1, 2), grows: false };
+
+    fn parsed(text: &str) -> (usize, Vec<String>) {
+        let source = Source { name: "t.csv".into(), text: text.into() };
+        let mut faults = Vec::new();
+        let rows = parse(&Arc::new(source), &SHAPE, &mut faults);
+        (rows.len(), faults.into_iter().map(|fault| fault.message).collect())
+    }
+
+    #[test]
+    fn a_byte_order_mark_counts_for_nothing() {
+        assert_eq!(parsed("\u{feff}x,x\n1,2\n"), (1, Vec::new()));
+        let (_, faults) = parsed("\u{feff}x,y\n1,2\n");
+        assert_eq!(faults, ["the first line must be x,x"]);
+    }
+
+    #[test]
+    fn other_separators_and_quotes_are_named() {
+        let commas = ": a table is separated by commas";
+        let first = |text: &str| parsed(text).1.into_iter().next().unwrap_or_default();
+        assert_eq!(first("x;x\n"), format!("values are separated by `;`{commas}"));
+        assert_eq!(first("x\tx\n"), format!("values are separated by tabs{commas}"));
+        assert_eq!(first("x,x\n1;2\n"), format!("values are separated by `;`{commas}"));
+        assert_eq!(first("x,x\n1\n"), "1 value: this table has 2");
+        assert_eq!(first("'x','x'\n"), "names are in quotes: a table has them without");
+    }
+
+    #[test]
+    fn a_wrong_number_of_rows_is_told_as_it_is() {
+        let wrong = |count, file, rows| check_count(count, file, rows).unwrap_or_default();
+        assert_eq!(wrong(1, "", (2, 9)), " has 1 row: must have 2 to 9");
+        assert_eq!(wrong(300, "", (2, 9)), " has 300 rows: must have 2 to 9");
+        assert_eq!(wrong(10, "a", (2, 9)), " = \"a\" has more than 9 rows: must have 2 to 9");
+        assert_eq!(wrong(0, "", (0, 9)), " has 0 rows: leave it out for none");
+        assert_eq!(wrong(0, "", (2, 9)), " has 0 rows: must have 2 to 9");
+        assert_eq!(check_count(9, "", (0, 9)), None);
+    }
 }

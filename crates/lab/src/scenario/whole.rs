@@ -175,8 +175,7 @@ impl Judge<'_> {
             self.say_at("vehicle", Some(place), message, "write layout = \"free\" beside it");
             return;
         }
-        let spins = (0..rows.len()).all(|i| [-1.0, 1.0].contains(&rows.cell(i, 3)));
-        if free && (rows.len() != 4 || !spins) {
+        if free && rows.len() != 4 {
             let message = format!(
                 "`vehicle.rotors` has {} rows: a free layout has four, each with a spin of 1 or -1",
                 rows.len()
@@ -321,10 +320,32 @@ impl Judge<'_> {
             return;
         }
         let step = self.scenario.run.control_step;
-        if let Err(fault) = sensor::check(&self.scenario.sensor, step) {
-            let help = "see `stormpetrel list sensor`; without any sensor the laws see the truth";
-            self.say("sensor", format!("`sensor`: {fault}"), help);
+        match sensor::check(&self.scenario.sensor, step) {
+            Err(fault @ sensor::Fault::Crowded { sensor, .. }) => self.crowded(sensor, &fault),
+            Err(fault) => {
+                let help =
+                    "see `stormpetrel list sensor`; without any sensor the laws see the truth";
+                self.say("sensor", format!("`sensor`: {fault}"), help);
+            }
+            Ok(()) => {}
         }
+    }
+
+    /// A sensor whose samples are under way for too long.
+    fn crowded(&mut self, sensor: usize, fault: &sensor::Fault) {
+        let item = match self.tree.get("sensor").map(|node| &node.value) {
+            Some(Value::List(items)) => items.get(sensor),
+            _ => None,
+        };
+        let given = |key: &str| match item.map(|node| &node.value) {
+            Some(Value::Table(table)) => table.get(key).map(|node| node.place.clone()),
+            _ => None,
+        };
+        let latency = given("latency");
+        let default = if latency.is_none() { "; this latency is the default" } else { "" };
+        let place = latency.or_else(|| item.map(|node| node.place.clone()));
+        let message = format!("`sensor`: {fault}{default}");
+        self.say_at("sensor", place, message, "lower `latency` or `jitter`, or lower `rate_hz`");
     }
 }
 

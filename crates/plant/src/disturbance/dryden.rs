@@ -13,8 +13,8 @@
 //! | n | white noise with unit intensity |
 //!
 //! u lies along the mean wind, w points up. (3) and (4) are stepped by their exact transition and
-//! covariance (see [`Longitudinal`] and [`Lateral`]) and begun in their stationary law, so the variance is
-//! `s^2` at every time and for every step. Source: MIL-F-8785C, 3.7.3 and 3.7.1.2.
+//! covariance and begun in their stationary law, so the variance is `s^2` at every time and for every
+//! step. Source: MIL-F-8785C, 3.7.3 and 3.7.1.2.
 
 use stormpetrel_control::math::{Vec3, World};
 use stormpetrel_control::real::Real;

@@ -1,8 +1,13 @@
 //! A mass on a cable from the centre of mass, attached at the onset and dropped at the end.
 //!
-//!   the equations are those of the module `sling`                        (1)
+//!   r = `x_cargo` - x,   |r| = length,   q = r/|r|                         (1)
+//!   T (1/m + 1/mass) = |r'|^2/length - q.u,   T >= 0                     (2)
+//!   r'' = -u - T q (1/m + 1/mass) - damping/mass (r' - q (q.r'))         (3)
+//!   pull on the vehicle: T q                                             (4)
 //!
-//! It hangs straight down when it is attached.
+//! with T the tension, m the mass of the vehicle and u the force on it per mass, without weight and
+//! tension. (2) is Newton's law for both masses while the cable is tight, the range of validity; a cable
+//! pulls and never pushes. It hangs straight down when it is attached.
 
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
@@ -46,6 +51,6 @@ impl<T: Real> Disturb<T> for SlungMass<T> {
     }
     fn sling(&self) -> Sling<T> {
         let Gains { mass, length, damping } = self.gains;
-        Sling { mass, length, damping } // (1)
+        Sling { mass, length, damping } // (1) to (4)
     }
 }

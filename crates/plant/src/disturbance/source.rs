@@ -27,6 +27,13 @@ record! {
     }
 }
 
+impl Window<f64> {
+    /// Whether any of it lies in a flight of this duration, s.
+    pub fn meets(&self, duration: f64) -> bool {
+        self.start < duration && self.start < self.end
+    }
+}
+
 record! {
     /// A disturbance and when it acts.
     pub struct Source {

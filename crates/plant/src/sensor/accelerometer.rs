@@ -1,9 +1,14 @@
 //! Accelerometer in the centre of mass: specific force in body axes, three numbers.
 //!
-//!   z = f + bias + white noise, behind a low-pass, in steps, within a range    (1)
+//!   z = round((y + b + noise/sqrt(T) n)/q) q,   within +-range            (1)
+//!   y' = 2 pi `cutoff_hz` (f + vibration s - y),   b += walk sqrt(T) n     (2)
 //!
-//! The errors and their source are those of [`triad`](super::triad). The numbers by default are those of
-//! a small MEMS sensor.
+//! with b the bias, q the resolution, T the time between two samples, n independent standard normal
+//! numbers and s the shaking of the rotors, in squares of their speeds. (2) is stepped exactly.
+//!
+//! Source: IEEE Std 952 for the error terms. The numbers by default are those of a small MEMS sensor.
+//!
+//! `latency` and `jitter` together are at most seven sampling periods.
 
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;

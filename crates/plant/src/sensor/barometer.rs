@@ -7,6 +7,8 @@
 //! The filter takes it for noise that is new in every sample, and trusts the height too much for it.
 //!
 //! Source: Gelb, Applied Optimal Estimation (1974), the exponentially correlated variable.
+//!
+//! `latency` and `jitter` together are at most seven sampling periods.
 
 use stormpetrel_control::estimator::Past;
 use stormpetrel_control::real::Real;

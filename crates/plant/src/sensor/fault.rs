@@ -1,5 +1,6 @@
 //! What is wrong with a set of sensors, decided once when it is loaded.
 
+use stormpetrel_control::real::Real;
 use stormpetrel_control::registry::Settings as _;
 
 use super::link::{SLOTS, period};
@@ -15,7 +16,9 @@ pub enum Fault {
         sensor: usize,
         /// Its kind.
         kind: &'static str,
-        /// The longest allowed sum of latency and jitter, s.
+        /// Its latency and jitter, s.
+        late: [f64; 2],
+        /// The longest allowed sum of the two, s.
         longest: f64,
     },
     /// The filter needs this kind, and it is not there.
@@ -29,10 +32,12 @@ pub enum Fault {
 impl core::fmt::Display for Fault {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Crowded { sensor, kind, longest } => write!(
+            Self::Crowded { sensor, kind, late: [latency, jitter], longest } => write!(
                 f,
-                "sensor {sensor} ({kind}): latency and jitter together must not exceed {} sampling periods, here {longest} s",
-                SLOTS - 1
+                "sensor {sensor} ({kind}): latency {latency} s and jitter {jitter} s together must not exceed {} sampling periods, here {} s",
+                SLOTS - 1,
+                // To the nanosecond: a product of periods has rounding errors.
+                Real::round(longest * 1e9) / 1e9
             ),
             Self::Missing(kind) => write!(f, "estimation needs a sensor of kind {kind}"),
             Self::Twice(kind) => write!(f, "there may be only one sensor of kind {kind}"),
@@ -65,7 +70,12 @@ pub fn check(sensors: &[SensorSettings], control_step: f64) -> Result<(), Fault>
         let longest = (SLOTS - 1) as f64 * period(timing.rate_hz, control_step) * control_step;
         // A rounding error must not refuse seven periods that are meant.
         if timing.latency + timing.jitter > longest * (1.0 + 1e-9) {
-            return Err(Fault::Crowded { sensor, kind: settings.name(), longest });
+            return Err(Fault::Crowded {
+                sensor,
+                kind: settings.name(),
+                late: [timing.latency, timing.jitter],
+                longest,
+            });
         }
     }
     Ok(())

@@ -3,6 +3,8 @@
 //!   z = (p + n_p, v + n_v)                                               (1)
 //!
 //! White noise; the slow errors of real receivers (minutes) and multipath are not modelled.
+//!
+//! `latency` and `jitter` together are at most seven sampling periods.
 
 use stormpetrel_control::estimator::Past;
 use stormpetrel_control::math::{Vec3, World};

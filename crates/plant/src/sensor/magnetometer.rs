@@ -4,6 +4,8 @@
 //!
 //! The filter takes the heading from it. Fields of the vehicle itself are not modelled. The field by
 //! default is that of middle latitudes in the north.
+//!
+//! `latency` and `jitter` together are at most seven sampling periods.
 
 use stormpetrel_control::estimator::Past;
 use stormpetrel_control::math::{Body, Vec3, World};

@@ -3,6 +3,8 @@
 //!   z = (p + n_p, R Exp(n_r))                                            (1)
 //!
 //! Source: usual camera systems; their errors between cameras are not modelled.
+//!
+//! `latency` and `jitter` together are at most seven sampling periods.
 
 use stormpetrel_control::estimator::{Past, turn};
 use stormpetrel_control::math::{Body, Rotation, Vec3};

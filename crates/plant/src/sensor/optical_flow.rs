@@ -3,6 +3,8 @@
 //!   z = (e_x.R'v + n, e_y.R'v + n, p_z + n_h)                            (1)
 //!
 //! The camera is taken to know its own turn and height; the ground is the plane z = 0.
+//!
+//! `latency` and `jitter` together are at most seven sampling periods.
 
 use stormpetrel_control::estimator::Past;
 use stormpetrel_control::real::Real;

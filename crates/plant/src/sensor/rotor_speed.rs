@@ -3,6 +3,8 @@
 //!   z = round((w + n)/q) q                                               (1)
 //!
 //! Source: the messages of usual motor controllers, which count electrical turns.
+//!
+//! `latency` and `jitter` together are at most seven sampling periods.
 
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
