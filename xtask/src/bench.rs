@@ -15,7 +15,7 @@ pub fn bench() -> Result<(), String> {
     let campaigns = campaigns()?;
     let compiler = Step::new("compiler", "rustc", &["--version"]).output()?;
     let text = format!(
-        "# Benchmarks\n\nMade by `cargo xtask bench`: the ordinary release build, best of five runs.\n\n\
+        "# Benchmarks\n\nMade by `cargo xtask bench`: the ordinary release build, the best of at least five runs.\n\n\
          Machine: {}, {} processors. Compiler: {}.\n\n{}\n\n\
          ## Whole commands\n\nThe whole `reproduce` with report and figures: {seconds:.1} s, {megabytes:.0} MB at most.\n\n{campaigns}",
         processor(),
