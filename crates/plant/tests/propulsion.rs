@@ -265,6 +265,7 @@ fn a_battery_gives_its_charge_and_then_nothing() {
         }
         actuation.suffer(&RotorFaults::none(), &at_speed(1458.0), 1e-3);
         seconds += 1e-3;
+        assert!(seconds < 2.0 * lasts, "it gives more than it holds");
     }
     assert!((seconds - lasts).abs() < 3e-3, "{seconds} s in the place of {lasts} s");
 }
