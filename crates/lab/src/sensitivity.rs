@@ -115,3 +115,23 @@ fn over_starts(scenario: &Scenario) -> Spread {
     let batches: Vec<_> = starts.chunks(LANES).collect();
     Spread { outcomes: on_all_cores(&batches, |batch| fly_batch(batch)).concat() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fly::Cause;
+    use crate::output::metrics_json;
+
+    #[test]
+    fn a_flight_fails_with_the_starts_beside_it() {
+        let fell = Failure { time: 0.5, cause: Cause::PositionError };
+        let flown = |rms: f64, failure| Outcome { metrics: vec![("rms".into(), rms)], failure };
+        let spread = Spread {
+            outcomes: vec![flown(1.0, None), flown(f64::NAN, Some(fell)), flown(3.0, None)],
+        };
+        assert_eq!((spread.failures(), spread.first_failure()), (1, Some(fell)));
+        let told = metrics_json(&flown(1.0, None), Some(&spread));
+        assert_eq!((&told["failed"], &told["starts.failed"]), (&true.into(), &1.into()));
+        assert_eq!((&told["rms.min"], &told["rms.max"]), (&1.0.into(), &3.0.into()));
+    }
+}
