@@ -32,6 +32,14 @@ pub fn wide<T: Real, W: Work>(work: W) -> W::Output {
     work.run()
 }
 
+/// Does rare work out of the way. Inlined, the compiler would do it ahead of its condition at every tick,
+/// for every kind of block and from whatever numbers stand in its place.
+#[cold]
+#[inline(never)]
+pub fn rarely<R>(work: impl FnOnce() -> R) -> R {
+    work()
+}
+
 /// How wide the registers are that a loop over lanes may use.
 #[cfg(feature = "std")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

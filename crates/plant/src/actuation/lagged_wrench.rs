@@ -14,6 +14,7 @@ use stormpetrel_control::stack::{Command, Exit};
 
 use super::Actuate;
 use super::wrench::IdealWrench;
+use crate::dispatch::rarely;
 use crate::state::State;
 use crate::vehicle::Vehicle;
 
@@ -63,7 +64,7 @@ impl<T: Real> Actuate<T> for LaggedWrench<T> {
     #[inline(always)]
     fn pass(&mut self, h: T) {
         if !self.step.eq(h).all() {
-            (self.step, self.blend) = (h, T::one() - (-h / self.gains.lag).exp());
+            (self.step, self.blend) = (h, rarely(|| T::one() - (-h / self.gains.lag).exp()));
         }
         self.torque += (self.ideal.wrench.torque - self.torque) * self.blend; // (2)
     }

@@ -36,6 +36,7 @@ use super::battery::{Battery, Gauge};
 use super::curve::{OpenCircuit, RotorCurve, look_up_lanes};
 use super::{Actuate, Load};
 use crate::aerodynamics::through_air;
+use crate::dispatch::rarely;
 use crate::disturbance::RotorFaults;
 use crate::state::State;
 use crate::vehicle::{Mount, Vehicle};
@@ -271,8 +272,8 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
     #[inline(always)]
     fn pass(&mut self, h: T) {
         if !self.step.eq(h).all() {
-            let half = -h.half();
-            (self.step, self.half_decays) = (h, each(self.per_lags, |rate| (half * rate).exp()));
+            let decays = || each(self.per_lags, |rate| (-h.half() * rate).exp());
+            (self.step, self.half_decays) = (h, rarely(decays));
         }
     }
     #[inline(always)]

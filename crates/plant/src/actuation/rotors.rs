@@ -17,6 +17,7 @@ use stormpetrel_control::signals::Wrench;
 use stormpetrel_control::stack::{Command, Exit};
 
 use super::Actuate;
+use crate::dispatch::rarely;
 use crate::state::State;
 use crate::vehicle::Vehicle;
 
@@ -111,7 +112,7 @@ impl<T: Real> Actuate<T> for Rotors<T> {
     #[inline(always)]
     fn pass(&mut self, h: T) {
         if !self.step.eq(h).all() {
-            (self.step, self.half_decay) = (h, (-h.half() / self.lag).exp());
+            (self.step, self.half_decay) = (h, rarely(|| (-h.half() / self.lag).exp()));
         }
     }
     #[inline(always)]
