@@ -25,6 +25,19 @@ pub trait Controller<T: Real>: Plain<T> {
         reference: &Self::Reference,
         dt: T,
     ) -> Self::Command;
+    /// [`Controller::update`], and the sum of the command's magnitudes; that is not a number where the
+    /// state or the limit is not finite.
+    #[inline(always)]
+    fn update_weighed(
+        &mut self,
+        measurement: &Measurement<T>,
+        reference: &Self::Reference,
+        dt: T,
+    ) -> (Self::Command, T) {
+        let command = self.update(measurement, reference, dt);
+        let weight = command.magnitude() + (self.sum(|x| x) + self.limit()) * T::zero();
+        (command, weight)
+    }
     /// Forgets the past, as if the flight began with this measurement.
     fn reset(&mut self, measurement: &Measurement<T>);
     /// Bound on the magnitude of every number in the command (SI).
@@ -37,8 +50,20 @@ pub trait Observer<T: Real>: Plain<T> {
     fn estimate(&self) -> Vec3<T, World>;
     /// Takes the measurement at the start of a tick.
     fn correct(&mut self, measurement: &Measurement<T>, dt: T);
+    /// [`Observer::correct`], and the sum of the new state: not finite where the state is not.
+    #[inline(always)]
+    fn correct_summed(&mut self, measurement: &Measurement<T>, dt: T) -> T {
+        self.correct(measurement, dt);
+        self.sum(|x| x)
+    }
     /// Moves on over the interval just commanded, after actuation.
     fn advance(&mut self, applied: &Applied<T>, dt: T);
+    /// [`Observer::advance`], and the sum of the new state: not finite where the state is not.
+    #[inline(always)]
+    fn advance_summed(&mut self, applied: &Applied<T>, dt: T) -> T {
+        self.advance(applied, dt);
+        self.sum(|x| x)
+    }
     /// Forgets the past, as if the flight began with this measurement.
     fn reset(&mut self, measurement: &Measurement<T>);
     /// Bound on the magnitude of each component of the estimate, m/s^2.
@@ -54,17 +79,19 @@ pub trait Observer<T: Real>: Plain<T> {
 macro_rules! dispatch_controller {
     (@update each $laws:ident $measurement:ident $reference:ident $dt:ident) => {{
         use $crate::record::RecordExt as _;
-        let mut commands = Self::Command::default();
+        let (mut commands, mut weights) = (Self::Command::default(), T::zero());
         for i in 0..T::LANES {
             let mut law = $laws.pick(i);
-            let command = law.update(&$measurement.pick(i), &$reference.pick(i), $dt.lane(i));
+            let (command, weight) =
+                law.update_weighed(&$measurement.pick(i), &$reference.pick(i), $dt.lane(i));
             command.put(&mut commands, i);
+            weights.set_lane(i, weight);
             law.put($laws, i);
         }
-        commands
+        (commands, weights)
     }};
     (@update whole $laws:ident $measurement:ident $reference:ident $dt:ident) => {
-        $laws.update($measurement, $reference, $dt)
+        $laws.update_weighed($measurement, $reference, $dt)
     };
     ($name:ident [$($variant:ident)+] ($reference:ident => $command:ident, $how:ident)) => {
         impl<T: $crate::real::Real> $crate::controller::Controller<T> for $name<T> {
@@ -72,6 +99,10 @@ macro_rules! dispatch_controller {
             type Command = $crate::signals::$command<T>;
             #[inline(always)]
             fn update(&mut self, measurement: &$crate::signals::Measurement<T>, reference: &Self::Reference, dt: T) -> Self::Command {
+                self.update_weighed(measurement, reference, dt).0
+            }
+            #[inline(always)]
+            fn update_weighed(&mut self, measurement: &$crate::signals::Measurement<T>, reference: &Self::Reference, dt: T) -> (Self::Command, T) {
                 match self { $( Self::$variant(laws) => {
                     laws.tune(dt);
                     $crate::dispatch_controller!(@update $how laws measurement reference dt)
@@ -89,9 +120,21 @@ macro_rules! dispatch_controller {
     };
 }
 
-/// Implements [`Observer`] for a registry.
+/// Implements [`Observer`] for a registry, vehicle by vehicle as [`dispatch_controller`] does.
 #[macro_export]
 macro_rules! dispatch_observer {
+    (@each [$($variant:ident)+] $all:ident $step:ident $with:ident $dt:ident) => {{
+        use $crate::record::RecordExt as _;
+        let mut sums = T::zero();
+        match $all { $( Self::$variant(laws) => {
+            for i in 0..T::LANES {
+                let mut law = laws.pick(i);
+                sums.set_lane(i, law.$step(&$with.pick(i), $dt.lane(i)));
+                law.put(laws, i);
+            }
+        } )+ }
+        sums
+    }};
     ($name:ident [$($variant:ident)+] ()) => {
         impl<T: $crate::real::Real> $crate::controller::Observer<T> for $name<T> {
             #[inline(always)]
@@ -100,19 +143,19 @@ macro_rules! dispatch_observer {
             }
             #[inline(always)]
             fn correct(&mut self, measurement: &$crate::signals::Measurement<T>, dt: T) {
-                match self { $( Self::$variant(law) => law.correct(measurement, dt), )+ }
+                self.correct_summed(measurement, dt);
+            }
+            #[inline(always)]
+            fn correct_summed(&mut self, measurement: &$crate::signals::Measurement<T>, dt: T) -> T {
+                $crate::dispatch_observer!(@each [$($variant)+] self correct_summed measurement dt)
             }
             #[inline(always)]
             fn advance(&mut self, applied: &$crate::signals::Applied<T>, dt: T) {
-                use $crate::record::RecordExt as _;
-                // Vehicle by vehicle: the loop vectoriser takes a law as a whole.
-                match self { $( Self::$variant(laws) => {
-                    for i in 0..T::LANES {
-                        let mut law = laws.pick(i);
-                        law.advance(&applied.pick(i), dt.lane(i));
-                        law.put(laws, i);
-                    }
-                } )+ }
+                self.advance_summed(applied, dt);
+            }
+            #[inline(always)]
+            fn advance_summed(&mut self, applied: &$crate::signals::Applied<T>, dt: T) -> T {
+                $crate::dispatch_observer!(@each [$($variant)+] self advance_summed applied dt)
             }
             #[inline(always)]
             fn reset(&mut self, measurement: &$crate::signals::Measurement<T>) {

@@ -3,7 +3,7 @@
 use crate::controller::{Controller, Observer, Plain};
 use crate::math::{Vec3, World};
 use crate::real::{Mask, Real};
-use crate::record::{Meta, Path, Record, Visitor, VisitorMut, blend, clamp, each, same};
+use crate::record::{Meta, Path, Record, Visitor, VisitorMut, blend, clamp, each, same, shown};
 use crate::signals::{Applied, Measurement};
 
 /// Makes a law total: whatever comes in, a finite command within the limit goes out.
@@ -49,17 +49,16 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
         // Whether all is well decides only what need not be computed: the results are the same.
         let before = if input.all { None } else { Some(self.law) };
         self.law.tune(dt);
-        let command = self.law.update(measurement, reference, dt);
+        let (command, weight) = self.law.update_weighed(measurement, reference, dt);
         let limit = self.law.limit();
         // Numbers whose magnitudes together are within the limit are finite, and within it one by one.
-        // Zero times a state or limit that is not finite makes the sum one that is not a number.
-        let rest = (self.law.sum(|x| x) + limit) * T::zero();
-        if input.all && (command.magnitude() + rest).le(limit).all() {
+        if input.all && weight.le(limit).all() {
             (self.last, self.flag) = (same(&command), T::zero());
             return command;
         }
-        self.settle(&command, limit, input.lanes, before, measurement);
-        self.last
+        // Copies: what a call may look at does not stay in registers.
+        self.settle(&same(&command), limit, input.lanes, before, &same(measurement));
+        same(&self.last)
     }
 
     /// The last command that was granted.
@@ -149,10 +148,10 @@ impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
     pub fn correct_checked(&mut self, input: Good<T>, measurement: &Measurement<T>, dt: T) {
         self.flag = T::zero();
         let before = if input.all { None } else { Some(self.law) };
-        self.law.correct(measurement, dt);
+        let sum = self.law.correct_summed(measurement, dt);
         self.last =
-            if input.all { *measurement } else { blend(input.lanes, measurement, &self.last) };
-        self.check(input, before);
+            if input.all { same(measurement) } else { blend(input.lanes, measurement, &self.last) };
+        self.check(input, sum, before);
     }
 
     /// [`Observer::advance`], total.
@@ -160,8 +159,8 @@ impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
     pub fn advance(&mut self, applied: &Applied<T>, dt: T) {
         let input = passing(applied, dt);
         let before = if input.all { None } else { Some(self.law) };
-        self.law.advance(applied, dt);
-        self.check(input, before);
+        let sum = self.law.advance_summed(applied, dt);
+        self.check(input, sum, before);
     }
 
     /// [`Observer::reset`].
@@ -172,10 +171,9 @@ impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
     }
 
     #[inline(always)]
-    fn check(&mut self, input: Good<T>, before: Option<O>) {
-        let good = input.and(finite(&self.law));
-        if !good.all {
-            self.mend(good.lanes, input.lanes, before);
+    fn check(&mut self, input: Good<T>, sum: T, before: Option<O>) {
+        if !(input.all && sum.is_finite().all()) {
+            self.mend(input.lanes & self.law.finite(), input.lanes, before);
         }
     }
 
@@ -215,17 +213,17 @@ impl<T: Real> Good<T> {
 
 /// Where the record is finite.
 #[inline(always)]
-pub fn finite<T: Real>(record: &impl Record<T>) -> Good<T> {
+pub fn finite<T: Real, R: Plain<T>>(record: &R) -> Good<T> {
     // A finite sum has finite terms. Terms so large that their sum is not are looked at one by one.
     let quick = Good::new(record.sum(|x| x).is_finite());
-    if quick.all { quick } else { Good::new(record.finite()) }
+    if quick.all { quick } else { Good::new(shown(record, R::finite)) }
 }
 
 /// Where the record is finite and `dt` a time that can pass.
 #[inline(always)]
-pub fn passing<T: Real>(record: &impl Record<T>, dt: T) -> Good<T> {
+pub fn passing<T: Real, R: Plain<T>>(record: &R, dt: T) -> Good<T> {
     let quick = Good::new(record.sum(|x| x).is_finite() & good_step(dt));
-    if quick.all { quick } else { Good::new(record.finite() & good_step(dt)) }
+    if quick.all { quick } else { Good::new(shown(record, R::finite) & good_step(dt)) }
 }
 
 /// Whether the step is a time that can pass. More than a second is a gap and not a step: an

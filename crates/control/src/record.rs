@@ -202,11 +202,18 @@ pub trait RecordExt<T: Real>: Record<T> {
 
 impl<T: Real, R: Record<T>> RecordExt<T> for R {}
 
-/// The same record. Of one vehicle, number by number: a copy in wider pieces would wait until the numbers
-/// just written have left the store buffer.
+/// The same record, copied number by number: a copy in wider pieces would wait until the numbers just
+/// written have left the store buffer, and one of many vehicles would be a call.
 #[inline(always)]
-pub fn same<T: Real, R: Record<T, With<T> = R> + Copy>(record: &R) -> R {
-    if T::LANES == 1 { R::zip([record], &mut |[x]| x) } else { *record }
+pub fn same<T: Real, R: Record<T, With<T> = R>>(record: &R) -> R {
+    R::zip([record], &mut |[x]| x)
+}
+
+/// What `look` answers about the record. A call may look at it: then one vehicle's record is copied for it,
+/// since what a call looks at does not stay in registers; those of many vehicles live in memory anyway.
+#[inline(always)]
+pub fn shown<T: Real, R: Record<T, With<T> = R>, A>(record: &R, look: impl FnOnce(&R) -> A) -> A {
+    if T::LANES == 1 { look(&same(record)) } else { look(record) }
 }
 
 /// `new` where the mask says yes, else `old`.

@@ -229,7 +229,7 @@ impl<T: Real> Flight<T> {
     /// What the laws are told: the truth, or what sensors and filter make of it.
     #[inline(always)]
     fn measurement(&mut self) -> Measurement<T> {
-        if self.sensing.estimate { self.sense() } else { self.measure() }
+        if self.sensing.estimate { same(&self.sense()) } else { self.measure() }
     }
 
     /// Ticks since the start.
@@ -371,7 +371,7 @@ impl<T: Real> Flight<T> {
             let (conditions, steps) = (&self.conditions, self.substeps);
             let whole = world::advance(&whole, h, steps, vehicle, &mut self.actuation, conditions);
             self.hanging = whole.hanging;
-            whole.body
+            same(&whole.body)
         } else {
             let push = Push { force: tick.disturbance.force, torque: tick.disturbance.torque };
             let held = Held::new(&self.per, &push);
@@ -385,7 +385,7 @@ impl<T: Real> Flight<T> {
         if steady.all() {
             self.state = same(&state);
         } else {
-            self.settle(&state);
+            self.settle(&same(&state));
         }
         self.flown += self.alive;
         self.tick += 1;
