@@ -149,14 +149,34 @@ pub trait Record<T: Real>: Copy {
     }
 }
 
+/// A step for each index from one up, the first ones written out: the compiler keeps an array that a loop
+/// walks in memory until it is too late to put it in registers.
+macro_rules! from_one {
+    ($count:ident, $i:ident => $step:expr) => {
+        if $count > 1 {
+            let $i = 1;
+            $step;
+        }
+        if $count > 2 {
+            let $i = 2;
+            $step;
+        }
+        if $count > 3 {
+            let $i = 3;
+            $step;
+        }
+        for $i in 4..$count {
+            $step;
+        }
+    };
+}
+
 /// A function of each item. The standard `map` on arrays is an iterator inside, which the compiler does
 /// not always inline; a call in the middle of the loop costs the wide registers.
 #[inline(always)]
 pub fn each<const N: usize, A: Copy, B: Copy>(items: [A; N], mut f: impl FnMut(A) -> B) -> [B; N] {
     let mut out = [f(items[0]); N];
-    for i in 1..N {
-        out[i] = f(items[i]);
-    }
+    from_one!(N, i => out[i] = f(items[i]));
     out
 }
 
@@ -164,9 +184,7 @@ pub fn each<const N: usize, A: Copy, B: Copy>(items: [A; N], mut f: impl FnMut(A
 #[inline(always)]
 pub fn from_index<const N: usize, B: Copy>(mut f: impl FnMut(usize) -> B) -> [B; N] {
     let mut out = [f(0); N];
-    for i in 1..N {
-        out[i] = f(i);
-    }
+    from_one!(N, i => out[i] = f(i));
     out
 }
 
@@ -302,17 +320,13 @@ impl<T: Real, R: Record<T>, const K: usize> Record<T> for [R; K] {
     ) -> Self::With<U> {
         // No closure round the items: the compiler would not inline it where they are large.
         let mut out = [R::zip(each(rows, |row| &row[0]), f); K];
-        for k in 1..K {
-            out[k] = R::zip(each(rows, |row| &row[k]), f);
-        }
+        from_one!(K, k => out[k] = R::zip(each(rows, |row| &row[k]), f));
         out
     }
     #[inline(always)]
     fn pick_lane(&self, i: usize) -> Self::With<T::Scalar> {
         let mut out = [self[0].pick_lane(i); K];
-        for k in 1..K {
-            out[k] = self[k].pick_lane(i);
-        }
+        from_one!(K, k => out[k] = self[k].pick_lane(i));
         out
     }
     #[inline(always)]
@@ -322,15 +336,13 @@ impl<T: Real, R: Record<T>, const K: usize> Record<T> for [R; K] {
         i: usize,
         f: &mut impl FnMut(T) -> T,
     ) {
-        for k in 0..K {
-            self[k].put_mapped(&mut batch[k], i, f);
-        }
+        self[0].put_mapped(&mut batch[0], i, f);
+        from_one!(K, k => self[k].put_mapped(&mut batch[k], i, f));
     }
     #[inline(always)]
     fn each_variable(&self, f: &mut impl FnMut(T)) {
-        for item in self {
-            item.each_variable(f);
-        }
+        self[0].each_variable(f);
+        from_one!(K, k => self[k].each_variable(f));
     }
 }
 
