@@ -136,6 +136,20 @@ pub fn runge_kutta<T: Real>(
     actuation: &impl Actuate<T>,
     held: &Held<T>,
 ) -> State<T> {
+    let mut next = along_mean(state, h, vehicle, actuation, held);
+    next.attitude = next.attitude.renormalised();
+    next
+}
+
+/// [`runge_kutta`] before the quaternion is normalised.
+#[inline(always)]
+pub fn along_mean<T: Real>(
+    state: &State<T>,
+    h: T,
+    vehicle: &Vehicle<T>,
+    actuation: &impl Actuate<T>,
+    held: &Held<T>,
+) -> State<T> {
     let [half_way, end] = actuation.rotor_speeds(state);
     let slope = |at: &State<T>| derivative(at, vehicle, actuation, held);
     let k1 = slope(state);
@@ -144,7 +158,5 @@ pub fn runge_kutta<T: Real>(
     let k4 = slope(&state.along(&k3, h, end));
     let two = T::lit(2.0);
     let mean = record::Record::zip([&k1, &k2, &k3, &k4], &mut |[a, b, c, d]| a + (b + c) * two + d);
-    let mut next = state.along(&mean, h * T::lit(1.0 / 6.0), end);
-    next.attitude = next.attitude.normalised();
-    next
+    state.along(&mean, h * T::lit(1.0 / 6.0), end)
 }

@@ -181,7 +181,7 @@ impl<T: Real> Scenery<'_, T> {
             accumulate(&mut sum, &last, weights[stage]);
         }
         let mut next = along(state, &sum, h * T::lit(1.0 / 6.0), end);
-        next.body.attitude = next.body.attitude.normalised();
+        next.body.attitude = next.body.attitude.renormalised();
         if self.conditions.hangs {
             self.conditions.sling.tighten(&mut next.hanging);
         }

@@ -4,7 +4,7 @@ use core::marker::PhantomData;
 use core::ops::Mul;
 
 use crate::math::{Body, Frame, Vec3, World};
-use crate::real::Real;
+use crate::real::{Mask as _, Real};
 use crate::record;
 use crate::record::{Meta, Path, Record, Visitor, VisitorMut};
 
@@ -63,6 +63,20 @@ impl<T: Real, A: Frame, B: Frame> Rotation<T, A, B> {
         let norm = (self.w.sq() + self.x.sq() + self.y.sq() + self.z.sq()).sqrt();
         let k = T::one() / norm;
         Self::from_quaternion(self.w * k, self.x * k, self.y * k, self.z * k)
+    }
+    /// [`Rotation::normalised`] for a norm that is nearly one, as after a step of integration: a series
+    /// takes the place of root and division where it has all digits.
+    #[inline(always)]
+    pub fn renormalised(self) -> Self {
+        let lost = T::one() - (self.w.sq() + self.x.sq() + self.y.sq() + self.z.sq());
+        let near = lost.abs().lt(T::lit(1e-6));
+        // 1/sqrt(1 - d) = 1 + d/2 + 3 d^2/8 + ...
+        let k = T::one() + lost * (T::lit(0.5) + lost * T::lit(0.375));
+        let scaled = Self::from_quaternion(self.w * k, self.x * k, self.y * k, self.z * k);
+        if near.all() {
+            return scaled;
+        }
+        Self::select(near, scaled, self.normalised())
     }
     /// `a` where the mask says yes, else `b`.
     #[inline(always)]
@@ -148,8 +162,10 @@ impl<T: Real, A: Frame, B: Frame> Rotation<T, A, B> {
         let x = (x4, of(wx, x4, xy, xz));
         let y = (y4, of(wy, xy, y4, yz));
         let z = (z4, of(wz, xz, yz, z4));
-        let (_, q) = larger(larger(larger(w, x), y), z);
-        q.normalised()
+        let (largest, q) = larger(larger(larger(w, x), y), z);
+        // The candidate's norm is four times its own component times `one`.
+        let k = T::lit(0.5) / (largest * one).sqrt();
+        Self::from_quaternion(q.w * k, q.x * k, q.y * k, q.z * k)
     }
 }
 

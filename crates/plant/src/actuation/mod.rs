@@ -13,7 +13,7 @@ use stormpetrel_control::{record, registry};
 
 use self::battery::Gauge;
 use crate::disturbance::RotorFaults;
-use crate::dynamics::{Held, runge_kutta};
+use crate::dynamics::{Held, along_mean};
 use crate::state::State;
 use crate::vehicle::Vehicle;
 use crate::world::Conditions;
@@ -109,10 +109,12 @@ macro_rules! dispatch_actuate {
                 match self { $( Self::$variant(all) => {
                     all.pass(h);
                     for i in 0..T::LANES {
-                        runge_kutta(&state.pick(i), h.lane(i), &vehicle.pick(i), &all.pick(i), &held.pick(i))
+                        along_mean(&state.pick(i), h.lane(i), &vehicle.pick(i), &all.pick(i), &held.pick(i))
                             .put(&mut next, i);
                     }
                 } )+ }
+                // All vehicles at once: only together can they pass by what none of them needs.
+                next.attitude = next.attitude.renormalised();
                 next
             }
         }
