@@ -34,10 +34,12 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
         dt: T,
     ) -> L::Command {
         let input = passing(measurement, dt).and(finite(reference));
-        self.update_checked(input, measurement, reference, dt)
+        self.update_checked(input, measurement, reference, dt);
+        self.last
     }
 
-    /// [`Guarded::update`] where the caller knows already in which lanes the `input` is good.
+    /// [`Guarded::update`] where the caller knows already in which lanes the `input` is good; the command
+    /// is [`Guarded::held`].
     #[inline(always)]
     pub fn update_checked(
         &mut self,
@@ -45,7 +47,7 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
         measurement: &Measurement<T>,
         reference: &L::Reference,
         dt: T,
-    ) -> L::Command {
+    ) {
         // Whether all is well decides only what need not be computed: the results are the same.
         let before = if input.all { None } else { Some(self.law) };
         self.law.tune(dt);
@@ -54,17 +56,16 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
         // Numbers whose magnitudes together are within the limit are finite, and within it one by one.
         if input.all && weight.le(limit).all() {
             (self.last, self.flag) = (same(&command), T::zero());
-            return command;
+        } else {
+            // Copies: what a call may look at does not stay in registers.
+            self.settle(&same(&command), limit, input.lanes, before, &same(measurement));
         }
-        // Copies: what a call may look at does not stay in registers.
-        self.settle(&same(&command), limit, input.lanes, before, &same(measurement));
-        same(&self.last)
     }
 
     /// The last command that was granted.
     #[inline(always)]
-    pub fn held(&self) -> L::Command {
-        self.last
+    pub fn held(&self) -> &L::Command {
+        &self.last
     }
 
     /// Grants what is good of the command, within the limit, and mends the rest.

@@ -142,35 +142,58 @@ impl<T: Real> Stack<T> {
         trajectory: &Trajectory<T>,
         dt: T,
     ) -> Command<T> {
+        let thrust = self.act(measurement, trajectory, dt);
+        self.command(thrust)
+    }
+
+    /// [`Stack::update`] that gives the thrust vector only; [`Stack::command`] tells the rest.
+    #[inline(always)]
+    pub fn act(
+        &mut self,
+        measurement: &Measurement<T>,
+        trajectory: &Trajectory<T>,
+        dt: T,
+    ) -> Thrust<T> {
         let Rhythm { position: slow, attitude: middle, rate: fast } = self.every;
         let longer = |every: u32| if every == 1 { dt } else { dt * T::lit(f64::from(every)) };
         let input = passing(measurement, dt);
-        let mut thrust = if self.due(slow) {
+        if self.due(slow) {
             let dt = longer(slow);
             self.observer.correct_checked(input, measurement, dt);
             let position = input.and(finite(trajectory));
-            self.position.update_checked(position, measurement, trajectory, dt)
-        } else {
-            self.position.held()
-        };
+            self.position.update_checked(position, measurement, trajectory, dt);
+        }
+        let mut thrust = *self.position.held();
         thrust.force -= self.observer.estimate();
+        if self.exit == Exit::Thrust {
+            return thrust;
+        }
+        // What a guard or the observer grants is finite: the levels below need not ask again.
+        if self.due(middle) {
+            let dt = longer(middle);
+            self.attitude_reference.update_checked(input, measurement, &thrust, dt);
+            let attitude = self.attitude_reference.held();
+            self.attitude.update_checked(input, measurement, attitude, dt);
+        }
+        if self.due(fast) {
+            let rate = self.attitude.held();
+            self.rate.update_checked(input, measurement, rate, longer(fast));
+        }
+        thrust
+    }
+
+    /// What every level asks for, below this thrust vector.
+    #[inline(always)]
+    pub fn command(&self, thrust: Thrust<T>) -> Command<T> {
         if self.exit == Exit::Thrust {
             return Command { thrust, ..Command::default() };
         }
-        // What a guard or the observer grants is finite: the levels below need not ask again.
-        let (attitude, rate) = if self.due(middle) {
-            let dt = longer(middle);
-            let attitude = self.attitude_reference.update_checked(input, measurement, &thrust, dt);
-            (attitude, self.attitude.update_checked(input, measurement, &attitude, dt))
-        } else {
-            (self.attitude_reference.held(), self.attitude.held())
-        };
-        let wrench = if self.due(fast) {
-            self.rate.update_checked(input, measurement, &rate, longer(fast))
-        } else {
-            self.rate.held()
-        };
-        Command { thrust, attitude, rate, wrench }
+        Command {
+            thrust,
+            attitude: *self.attitude_reference.held(),
+            rate: *self.attitude.held(),
+            wrench: *self.rate.held(),
+        }
     }
 
     /// Tells the observer what drove the vehicle in the interval just commanded.

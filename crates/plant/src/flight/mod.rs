@@ -6,7 +6,7 @@ use stormpetrel_control::math::{Body, Rotation, Vec3, World};
 use stormpetrel_control::real::{Mask, Real};
 use stormpetrel_control::record;
 use stormpetrel_control::record::{Record as _, RecordExt as _, blend, same};
-use stormpetrel_control::signals::{Applied, Measurement, Model, Trajectory, Wrench};
+use stormpetrel_control::signals::{Applied, Measurement, Model, Thrust, Trajectory, Wrench};
 use stormpetrel_control::stack::{Command, Stack};
 
 use crate::actuation::{Actuate, Actuation};
@@ -307,24 +307,24 @@ impl<T: Real> Flight<T> {
     #[inline(always)]
     fn command(&mut self, told: &Measurement<T>, reference: &Trajectory<T>) -> Command<T> {
         let dt = self.control_step;
-        let before = if self.timing.drops { Some((self.stack, self.decided)) } else { None };
-        let mut command = self.stack.update(told, reference, dt);
-        if self.timing.late {
-            self.decided = command;
-            if let Some((stack, decided)) = before {
-                self.drop_tick(&stack, &decided);
-            }
-            command = self.timing.pass(&self.decided, self.ticks(), self.tick, dt);
-        }
-        command
+        let before = if self.timing.drops { Some(self.stack) } else { None };
+        let thrust = self.stack.act(told, reference, dt);
+        if self.timing.late { self.late(&same(&thrust), before) } else { self.stack.command(thrust) }
     }
 
-    /// Where the tick is dropped, the laws have not run: they and their command are as before.
+    /// [`Flight::command`] where commands may be late: the laws ask for `thrust`, and were as `before` where
+    /// ticks may be dropped.
     #[inline(never)]
-    fn drop_tick(&mut self, stack: &Stack<T>, decided: &Command<T>) {
-        let dropped = self.timing.dropped(self.ticks());
-        self.stack = blend(dropped, stack, &self.stack);
-        self.decided = blend(dropped, decided, &self.decided);
+    fn late(&mut self, thrust: &Thrust<T>, before: Option<Stack<T>>) -> Command<T> {
+        let (mut decided, tick) = (self.stack.command(*thrust), self.ticks());
+        if let Some(before) = before {
+            // Where the tick is dropped, the laws have not run: they and their command are as before.
+            let dropped = self.timing.dropped(tick);
+            self.stack = blend(dropped, &before, &self.stack);
+            decided = blend(dropped, &self.decided, &decided);
+        }
+        self.decided = decided;
+        self.timing.pass(&decided, tick, self.tick, self.control_step)
     }
 
     /// m_law (a + g_law e_z) - T_law R e_z from the true acceleration, N.
