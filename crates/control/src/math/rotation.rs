@@ -70,9 +70,11 @@ impl<T: Real, A: Frame, B: Frame> Rotation<T, A, B> {
     pub fn renormalised(self) -> Self {
         let lost = T::one() - (self.w.sq() + self.x.sq() + self.y.sq() + self.z.sq());
         let near = lost.abs().lt(T::lit(1e-6));
-        // 1/sqrt(1 - d) = 1 + d/2 + 3 d^2/8 + ...
-        let k = T::one() + lost * (T::lit(0.5) + lost * T::lit(0.375));
-        let scaled = Self::from_quaternion(self.w * k, self.x * k, self.y * k, self.z * k);
+        // 1/sqrt(1 - d) = 1 + d/2 + 3 d^2/8 + ...; what is added is small, so rounding takes little of it.
+        let more = lost * (T::lit(0.5) + lost * T::lit(0.375));
+        let grown = |x: T| x + x * more;
+        let scaled =
+            Self::from_quaternion(grown(self.w), grown(self.x), grown(self.y), grown(self.z));
         if near.all() {
             return scaled;
         }

@@ -309,7 +309,11 @@ impl<T: Real> Flight<T> {
         let dt = self.control_step;
         let before = if self.timing.drops { Some(self.stack) } else { None };
         let thrust = self.stack.act(told, reference, dt);
-        if self.timing.late { self.late(&same(&thrust), before) } else { self.stack.command(thrust) }
+        if self.timing.late {
+            self.late(&same(&thrust), before)
+        } else {
+            self.stack.command(thrust)
+        }
     }
 
     /// [`Flight::command`] where commands may be late: the laws ask for `thrust`, and were as `before` where
