@@ -161,6 +161,17 @@ proptest! {
     }
 
     #[test]
+    fn a_norm_that_is_nearly_one_is_restored_like_any_other(
+        q in quaternion(), exponent in -16.0..1.0, sign in prop_oneof![Just(-1.0), Just(1.0)],
+    ) {
+        let k: f64 = 1.0 + 0.9 * sign * 10f64.powf(exponent).min(1.0);
+        let r = ours(q.map(|c| c * k)).renormalised();
+        let norm = [r.w, r.x, r.y, r.z].iter().map(|c| c * c).sum::<f64>().sqrt();
+        prop_assert!((norm - 1.0).abs() < 1e-15, "norm {norm} after {k}");
+        prop_assert!(apart(r, &theirs(q)) < 1e-15);
+    }
+
+    #[test]
     fn the_shortest_form_is_the_same_rotation_with_positive_scalar(q in quaternion()) {
         let r = ours(q).shortest();
         prop_assert!(r.w >= 0.0);

@@ -9,11 +9,11 @@ use stormpetrel_control::controller::Controller;
 use stormpetrel_control::guard::{Guarded, GuardedObserver};
 use stormpetrel_control::lanes::Lanes;
 use stormpetrel_control::math::Vec3;
-use stormpetrel_control::observer::ObserverSettings;
+use stormpetrel_control::observer::{Observer, ObserverSettings};
 use stormpetrel_control::position::PositionSettings;
 use stormpetrel_control::rate::RateLawSettings;
 use stormpetrel_control::real::Real;
-use stormpetrel_control::record::RecordExt;
+use stormpetrel_control::record::{Record, RecordExt};
 use stormpetrel_control::registry::Settings;
 use stormpetrel_control::signals::{Applied, Measurement, Model};
 use stormpetrel_lab::fly::{LANES, fly, fly_batch_at};
@@ -86,23 +86,77 @@ fn say(line: &str) {
     println!("{line}");
 }
 
-fn law<L: Controller<f64>>(kind: &str, name: &str, law: L, reference: L::Reference)
+/// A guarded law, asked again and again.
+struct Updates<'a, T: Real, L: Controller<T>> {
+    law: L,
+    reference: &'a L::Reference,
+    dt: T,
+}
+
+impl<T: Real, L: Controller<T>> Work for Updates<'_, T, L>
 where
     L::Command: Default,
 {
-    let mut law = Guarded::new(law, L::Command::default());
-    let measurement = Measurement::<f64>::default();
-    law.reset(&measurement);
-    let ns = best(TICKS, || {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let mut law = Guarded::new(self.law, L::Command::default());
+        let measurement = Measurement::<T>::default();
+        law.reset(&measurement);
         for _ in 0..TICKS {
-            black_box(law.update(black_box(&measurement), black_box(&reference), 1e-3));
+            black_box(law.update(black_box(&measurement), black_box(self.reference), self.dt));
         }
-    });
-    say(&format!("| {kind} `{name}` | {ns:.1} |"));
+    }
+}
+
+/// An observer, told and asked again and again.
+struct Corrections<T>(Observer<T>, T);
+
+impl<T: Real> Work for Corrections<T> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let (mut observer, dt) = (GuardedObserver::new(self.0), self.1);
+        let measurement = Measurement::<T>::default();
+        let mut applied = Applied::<T>::default();
+        applied.measured.x = T::lit(0.1);
+        for _ in 0..TICKS {
+            observer.correct(black_box(&measurement), dt);
+            observer.advance(black_box(&applied), dt);
+            black_box(observer.estimate());
+        }
+    }
+}
+
+/// The row of a block: one vehicle, and eight lanes on the widest registers.
+fn block(kind: &str, name: &str, alone: impl FnMut(), lanes: impl FnMut()) {
+    let (single, wide) = (best(TICKS, alone), best(TICKS * LANES as u64, lanes));
+    say(&format!("| {kind} `{name}` | {single:.1} | {wide:.1} | {:.1} times |", single / wide));
+}
+
+fn law<L, W>(kind: &str, name: &str, law: L, reference: L::Reference)
+where
+    L: Controller<f64> + Record<f64, With<Eight> = W>,
+    L::Command: Default,
+    L::Reference: Record<f64, With<Eight> = W::Reference>,
+    W: Controller<Eight>,
+    W::Command: Default,
+{
+    let (laws, references): (W, _) =
+        (RecordExt::gather([&law; LANES]), RecordExt::gather([&reference; LANES]));
+    block(
+        kind,
+        name,
+        || Updates { law, reference: &reference, dt: 1e-3 }.run(),
+        || Width::widest().run(Updates { law: laws, reference: &references, dt: Eight::lit(1e-3) }),
+    );
 }
 
 fn laws() {
-    say("| law (guarded, one f64 vehicle) | ns per update |\n|---|---|");
+    let widest = Width::widest().name();
+    say(&format!(
+        "| law (guarded) | ns per update alone | in eight lanes, {widest} | against alone |\n|---|---|---|---|"
+    ));
     let model = Model::default();
     let mut thrust = stormpetrel_control::signals::Thrust::<f64>::default();
     thrust.force.z = 9.8;
@@ -124,18 +178,13 @@ fn laws() {
     }
     for name in ObserverSettings::NAMES {
         let made = ObserverSettings::named(name).map(|s| s.build(&model)).unwrap_or_default();
-        let mut observer = GuardedObserver::new(made);
-        let measurement = Measurement::<f64>::default();
-        let mut applied = Applied::<f64>::default();
-        applied.measured.x = 0.1;
-        let ns = best(TICKS, || {
-            for _ in 0..TICKS {
-                observer.correct(black_box(&measurement), 1e-3);
-                observer.advance(black_box(&applied), 1e-3);
-                black_box(observer.estimate());
-            }
-        });
-        say(&format!("| observer `{name}` | {ns:.1} |"));
+        let all: Observer<Eight> = RecordExt::<f64>::gather([&made; LANES]);
+        block(
+            "observer",
+            name,
+            || Corrections(made, 1e-3).run(),
+            || Width::widest().run(Corrections(all, Eight::lit(1e-3))),
+        );
     }
 }
 
