@@ -35,14 +35,16 @@ const ALLOWED: [&str; 11] = [
     "vectorize::imp",
 ];
 
-/// Blocks with a boundary of their own, which a plain flight never calls: the whole world, sensors, delays.
-const APART: [&str; 8] = [
-    "flight::Flight<T>::drop_tick",
+/// Blocks with a boundary of their own, which a plain flight never calls at a tick: the whole world, sensors,
+/// delays, tables, and what a change of the step asks for.
+const APART: [&str; 9] = [
+    "curve::look_up",
+    "dispatch::rarely",
+    "flight::Flight<T>::late",
     "flight::Flight<T>>::prepare",
     "flight::Flight<T>>::sense",
     "flight::Flight<T>>::unexplained",
     "surroundings::survey",
-    "timing::Timing<T>::pass",
     "world::advance",
     "world::look",
 ];

@@ -168,17 +168,16 @@ impl<T: Real> Scenery<'_, T> {
     fn runge_kutta(&self, state: &Whole<T>, h: T) -> Whole<T> {
         let [half_way, end] = self.actuation.rotor_speeds(&state.body);
         let ahead = [
-            (T::zero(), state.body.rotor_speed),
-            (h.half(), half_way),
-            (h.half(), half_way),
-            (h, end),
+            (T::zero(), state.body.rotor_speed, 1.0),
+            (h.half(), half_way, 2.0),
+            (h.half(), half_way, 2.0),
+            (h, end, 1.0),
         ];
-        let weights = [1.0, 2.0, 2.0, 1.0];
         let (mut last, mut sum) = (Slope::default(), Slope::default());
         // A loop, so that the world is compiled once and not four times.
-        for (stage, (ahead, speeds)) in ahead.into_iter().enumerate() {
+        for (ahead, speeds, weight) in ahead {
             last = self.slope(&along(state, &last, ahead, speeds));
-            accumulate(&mut sum, &last, weights[stage]);
+            accumulate(&mut sum, &last, weight);
         }
         let mut next = along(state, &sum, h * T::lit(1.0 / 6.0), end);
         next.body.attitude = next.body.attitude.renormalised();

@@ -91,7 +91,11 @@ macro_rules! dispatch_actuate {
             /// What the rotors do to the body in this state, vehicle by vehicle.
             #[inline(always)]
             pub fn load(&self, state: &State<T>, vehicle: &Vehicle<T>, around: &Conditions<T>) -> Load<T> {
-                match self { $( Self::$variant(all) => all.load(state, vehicle, around).unwrap_or_else(|| {
+                match self { $( Self::$variant(all) => {
+                    // No closure: the compiler would not always inline it.
+                    if let Some(load) = all.load(state, vehicle, around) {
+                        return load;
+                    }
                     let mut load = Load::default();
                     for i in 0..T::LANES {
                         let (one, state) = (all.pick(i), state.pick(i));
@@ -99,7 +103,7 @@ macro_rules! dispatch_actuate {
                         Load { thrust_per_mass, torque: one.torque(&state) }.put(&mut load, i);
                     }
                     load
-                }), )+ }
+                } )+ }
             }
 
             /// The state `h` seconds on, vehicle by vehicle, where nothing but pushes disturbs it.
