@@ -27,7 +27,7 @@ const ALLOWED: [&str; 11] = [
     "::mend",
     "Record::finite",
     // Only where the loop is left by a panic.
-    "batch::Seat>; 8]>",
+    "batch::Seat>",
     "_Unwind_Resume",
     "core::panicking::panic_in_cleanup",
     // The choice of the width stands in the function of the baseline.
@@ -36,9 +36,8 @@ const ALLOWED: [&str; 11] = [
 ];
 
 /// Blocks with a boundary of their own, which a plain flight never calls at a tick: the whole world, sensors,
-/// delays, tables, and what a change of the step asks for.
-const APART: [&str; 9] = [
-    "curve::look_up",
+/// delays, and what a change of the step asks for.
+const APART: [&str; 8] = [
     "dispatch::rarely",
     "flight::Flight<T>::late",
     "flight::Flight<T>>::prepare",

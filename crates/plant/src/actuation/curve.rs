@@ -23,6 +23,7 @@ columns! {
 
 /// The columns after the first at `x`, straight between the rows, constant outside; column zero of the
 /// answer is the table's second. Zero where the table is empty.
+#[inline(always)]
 pub fn look_up<C: Columns, const N: usize>(rows: &Rows<C>, x: f64) -> [f64; N] {
     let (mut low, mut high) = (0, rows.len().saturating_sub(1));
     while high > low + 1 {
