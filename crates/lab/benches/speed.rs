@@ -167,7 +167,7 @@ where
                 law: laws,
                 reference: &references,
                 dt: Eight::lit(1e-3),
-            })
+            });
         },
     );
 }
