@@ -9,6 +9,7 @@ use crate::position::Position;
 use crate::rate::RateLaw;
 use crate::real::Real;
 use crate::record;
+use crate::record::same;
 use crate::signals::{Applied, Attitude, Measurement, Rate, Thrust, Trajectory, Wrench};
 
 /// Down to which level the stack commands.
@@ -163,7 +164,7 @@ impl<T: Real> Stack<T> {
             let position = input.and(finite(trajectory));
             self.position.update_checked(position, measurement, trajectory, dt);
         }
-        let mut thrust = *self.position.held();
+        let mut thrust = same(self.position.held());
         thrust.force -= self.observer.estimate();
         if self.exit == Exit::Thrust {
             return thrust;

@@ -309,11 +309,12 @@ impl<T: Real> Flight<T> {
         let dt = self.control_step;
         let before = if self.timing.drops { Some(self.stack) } else { None };
         let thrust = self.stack.act(told, reference, dt);
+        // Written once, where it stays: of two branches that each make one, one would be copied.
+        let mut command = self.stack.command(thrust);
         if self.timing.late {
-            self.late(&same(&thrust), before)
-        } else {
-            self.stack.command(thrust)
+            command = self.late(&same(&thrust), before);
         }
+        command
     }
 
     /// [`Flight::command`] where commands may be late: the laws ask for `thrust`, and were as `before` where
