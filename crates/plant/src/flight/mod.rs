@@ -309,7 +309,7 @@ impl<T: Real> Flight<T> {
         let dt = self.control_step;
         let before = if self.timing.drops { Some(self.stack) } else { None };
         let thrust = self.stack.act(told, reference, dt);
-        // Written once, where it stays: of two branches that each make one, one would be copied.
+        // Written once, where it stays: of two branches that each make one, one may be copied.
         let mut command = self.stack.command(thrust);
         if self.timing.late {
             command = self.late(&same(&thrust), before);
