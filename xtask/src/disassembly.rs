@@ -17,7 +17,7 @@ const WIDTHS: [(&str, [&str; 2], &str); 3] = [
 ];
 
 /// What the loop may call: names of C in full, of Rust in part.
-const ALLOWED: [&str; 11] = [
+const ALLOWED: [&str; 10] = [
     // Copies of whole records.
     "memcpy",
     "memmove",
@@ -27,7 +27,6 @@ const ALLOWED: [&str; 11] = [
     "::mend",
     "Record::finite",
     // Only where the loop is left by a panic.
-    "batch::Seat>",
     "_Unwind_Resume",
     "core::panicking::panic_in_cleanup",
     // The choice of the width stands in the function of the baseline.
@@ -37,13 +36,12 @@ const ALLOWED: [&str; 11] = [
 
 /// Blocks with a boundary of their own, which a plain flight never calls at a tick: the whole world, sensors,
 /// delays, and what a change of the step asks for.
-const APART: [&str; 8] = [
+const APART: [&str; 7] = [
     "dispatch::rarely",
     "flight::Flight<T>::late",
     "flight::Flight<T>>::prepare",
     "flight::Flight<T>>::sense",
     "flight::Flight<T>>::unexplained",
-    "surroundings::survey",
     "world::advance",
     "world::look",
 ];

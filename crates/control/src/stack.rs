@@ -143,18 +143,18 @@ impl<T: Real> Stack<T> {
         trajectory: &Trajectory<T>,
         dt: T,
     ) -> Command<T> {
-        let thrust = self.act(measurement, trajectory, dt);
-        self.command(thrust)
+        self.act(measurement, trajectory, dt);
+        self.command()
     }
 
-    /// [`Stack::update`] that gives the thrust vector only; [`Stack::command`] tells the rest.
+    /// [`Stack::update`] that gives the thrust per mass only; [`Stack::command`] tells the rest.
     #[inline(always)]
     pub fn act(
         &mut self,
         measurement: &Measurement<T>,
         trajectory: &Trajectory<T>,
         dt: T,
-    ) -> Thrust<T> {
+    ) -> Vec3<T, World> {
         let Rhythm { position: slow, attitude: middle, rate: fast } = self.every;
         let longer = |every: u32| if every == 1 { dt } else { dt * T::lit(f64::from(every)) };
         let input = passing(measurement, dt);
@@ -164,10 +164,9 @@ impl<T: Real> Stack<T> {
             let position = input.and(finite(trajectory));
             self.position.update_checked(position, measurement, trajectory, dt);
         }
-        let mut thrust = same(self.position.held());
-        thrust.force -= self.observer.estimate();
+        let thrust = self.thrust();
         if self.exit == Exit::Thrust {
-            return thrust;
+            return thrust.force;
         }
         // What a guard or the observer grants is finite: the levels below need not ask again.
         if self.due(middle) {
@@ -180,12 +179,13 @@ impl<T: Real> Stack<T> {
             let rate = self.attitude.held();
             self.rate.update_checked(input, measurement, rate, longer(fast));
         }
-        thrust
+        thrust.force
     }
 
-    /// What every level asks for, below this thrust vector.
+    /// What every level asks for.
     #[inline(always)]
-    pub fn command(&self, thrust: Thrust<T>) -> Command<T> {
+    pub fn command(&self) -> Command<T> {
+        let thrust = self.thrust();
         if self.exit == Exit::Thrust {
             return Command { thrust, ..Command::default() };
         }
@@ -195,6 +195,20 @@ impl<T: Real> Stack<T> {
             rate: *self.attitude.held(),
             wrench: *self.rate.held(),
         }
+    }
+
+    /// The thrust vector that the position law asks for, disturbance estimate subtracted.
+    #[inline(always)]
+    pub fn thrust(&self) -> Thrust<T> {
+        let mut thrust = same(self.position.held());
+        thrust.force -= self.observer.estimate();
+        thrust
+    }
+
+    /// Thrust and torque that the lowest level asks for; zero where it rests.
+    #[inline(always)]
+    pub fn wrench(&self) -> Wrench<T> {
+        same(self.rate.held())
     }
 
     /// Tells the observer what drove the vehicle in the interval just commanded.

@@ -52,7 +52,7 @@ fn fly_together(scenarios: &[&Scenario], width: Width, attitude: bool) -> Vec<Ou
         if batch.seats.iter().all(Option::is_none) && waiting.is_empty() {
             break;
         }
-        batch = width.run(Segment(batch));
+        width.run(Segment(&mut batch));
         for (row, outcome) in batch.leave() {
             outcomes[row] = Some(outcome);
         }
@@ -144,22 +144,23 @@ impl Batch {
 }
 
 /// The closed loop until the first flight of the batch is over, to be compiled for each width.
-struct Segment(Batch);
+struct Segment<'a>(&'a mut Batch);
 
-impl Work for Segment {
-    type Output = Batch;
+impl Work for Segment<'_> {
+    type Output = ();
 
     #[inline(always)]
-    fn run(self) -> Batch {
-        let Batch { mut flight, mut sums, setting, taken, mut seats, mut until } = self.0;
+    fn run(self) {
+        let Batch { flight: fleet, sums: total, setting, taken, seats, until } = self.0;
+        // Copies of what changes at every tick: what others may reach does not stay in registers.
+        let (mut flight, mut sums) = (*fleet, *total);
         for seat in seats.iter().flatten() {
-            if seat.end < until {
-                until = seat.end;
-            }
+            *until = seat.end.min(*until);
         }
-        while flight.tick < until && flight.alive.eq(taken).all() {
+        let until = *until;
+        while flight.tick < until && flight.alive.eq(*taken).all() {
             let tick = flight.decide();
-            let errors = sums.push(&tick, &setting, flight.alive);
+            let errors = sums.push(&tick, setting, flight.alive);
             for lane in 0..LANES {
                 if let Some(seat) = &mut seats[lane] {
                     seat.distribution.push(&errors.pick(lane));
@@ -167,6 +168,6 @@ impl Work for Segment {
             }
             flight.advance(&tick);
         }
-        Batch { flight, sums, setting, taken, seats, until }
+        (*fleet, *total) = (flight, sums);
     }
 }

@@ -13,13 +13,13 @@
 //! dropped tick no law runs, and the command before it is sent again. Delays are whole control steps: a
 //! finer grain takes a shorter step with slower loops.
 
-use stormpetrel_control::math::{Vec3, World};
+use stormpetrel_control::math::Vec3;
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
 use stormpetrel_control::record::RecordExt as _;
 use stormpetrel_control::signals::Wrench;
-use stormpetrel_control::stack::Command;
 
+use crate::actuation::Sent;
 use crate::random::Stream;
 
 /// Control steps that a command may be late, jitter included.
@@ -36,16 +36,6 @@ record! {
         jitter: T [s] = 0.0, in 0.0 => 1.0;
         /// Share of the ticks at which no law runs.
         dropped: T [1] = 0.0, in 0.0 => 1.0;
-    }
-}
-
-record! {
-    /// What is sent to the actuation.
-    pub struct Sent {
-        /// Thrust vector per mass.
-        force: Vec3<T, World> [m/s^2];
-        /// Thrust and torque.
-        wrench: Wrench<T> [];
     }
 }
 
@@ -96,19 +86,18 @@ impl<T: Real> Timing<T> {
         self.stream.unit(tick, 0).lt(self.delays.dropped)
     }
 
-    /// Sends `command` at the `slot`-th tick of the batch; gives what reaches the rotors now.
+    /// Sends this at the `slot`-th tick of the batch; gives what reaches the rotors now.
     #[inline(never)]
-    pub fn pass(&mut self, command: &Command<T>, tick: T, slot: u64, dt: T) -> Command<T> {
+    pub fn pass(&mut self, sent: &Sent<T>, tick: T, slot: u64, dt: T) -> Sent<T> {
         let at = |slot: u64| ((slot / 8 % 4) as usize, (slot % 8) as usize);
         let (row, column) = at(slot);
-        let sent = Sent { force: command.thrust.force, wrench: command.wrench };
-        self.ring[row][column] = sent;
+        self.ring[row][column] = *sent;
         let Delays { computation_delay, actuator_delay, jitter, .. } = self.delays;
         let steps = ((computation_delay + actuator_delay) / dt).round();
         let room = T::one() + jitter / dt;
         let age = steps + (self.stream.unit(tick, 1) * room).floor(); // (1)
         self.age = age.min(self.age + T::one()).min(T::lit(LATEST as f64)); // (2)
-        let mut acting = sent;
+        let mut acting = *sent;
         // Each lane looks back as far as its own command is old.
         for i in 0..T::LANES {
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -117,8 +106,6 @@ impl<T: Real> Timing<T> {
             let (row, column) = at(slot.wrapping_sub(back));
             self.ring[row][column].pick(i).put(&mut acting, i);
         }
-        let mut late = *command;
-        (late.thrust.force, late.wrench) = (acting.force, acting.wrench);
-        late
+        acting
     }
 }

@@ -9,7 +9,7 @@ use common::{Scene, body, named};
 use stormpetrel_control::math::Vec3;
 use stormpetrel_control::registry::Settings;
 use stormpetrel_control::signals::Wrench;
-use stormpetrel_control::stack::Command;
+use stormpetrel_plant::actuation::Sent;
 use stormpetrel_plant::actuation::{Actuate, Actuation, ActuationSettings, lagged_wrench};
 use stormpetrel_plant::dynamics::{Held, Push, Reciprocals, runge_kutta};
 use stormpetrel_plant::state::State;
@@ -19,9 +19,9 @@ fn vehicle() -> Vehicle<f64> {
     Scene::default().vehicle
 }
 
-fn asking(thrust: f64, torque: [f64; 3]) -> Command<f64> {
+fn asking(thrust: f64, torque: [f64; 3]) -> Sent<f64> {
     let [x, y, z] = torque;
-    Command { wrench: Wrench { thrust, torque: body(x, y, z) }, ..Command::default() }
+    Sent { wrench: Wrench { thrust, torque: body(x, y, z) }, ..Sent::default() }
 }
 
 fn rotors() -> Actuation<f64> {

@@ -10,7 +10,7 @@ mod common;
 use common::{Free, Scene, body, named, slope, world};
 use stormpetrel_control::math::Rotation;
 use stormpetrel_control::signals::Wrench;
-use stormpetrel_control::stack::Command;
+use stormpetrel_plant::actuation::Sent;
 use stormpetrel_plant::actuation::{Actuate, Actuation, ActuationSettings};
 use stormpetrel_plant::dynamics::{Held, Push, Reciprocals, runge_kutta};
 use stormpetrel_plant::state::State;
@@ -66,7 +66,7 @@ impl Setup {
     fn new(kind: &str, wrench: Wrench<f64>) -> Self {
         let vehicle = Scene::default().vehicle;
         let mut actuation = named::<ActuationSettings>(kind).build(&vehicle);
-        actuation.command(&Command { wrench, ..Command::default() }, &vehicle);
+        actuation.command(&Sent { wrench, ..Sent::default() }, &vehicle);
         let push = Push { force: world(0.3, -0.2, 0.1), torque: body(2e-3, -1e-3, 3e-3) };
         let start = State {
             velocity: world(1.0, 0.5, -0.5),

@@ -8,7 +8,7 @@ use common::{Scene, body, named, source, step, world};
 use stormpetrel_control::math::Vec3;
 use stormpetrel_control::options::Cells;
 use stormpetrel_control::signals::Wrench;
-use stormpetrel_control::stack::Command;
+use stormpetrel_plant::actuation::Sent;
 use stormpetrel_plant::actuation::propulsion::{self, Options, Supply};
 use stormpetrel_plant::actuation::{Actuate, Actuation, ActuationSettings};
 use stormpetrel_plant::disturbance::{DisturbanceSettings, RotorFaults, rotor_lost};
@@ -49,8 +49,8 @@ fn moved(
     whole::advance(&whole, h, 1, vehicle, actuation, conditions).body
 }
 
-fn asking(thrust: f64) -> Command<f64> {
-    Command { wrench: Wrench { thrust, torque: Vec3::zero() }, ..Command::default() }
+fn asking(thrust: f64) -> Sent<f64> {
+    Sent { wrench: Wrench { thrust, torque: Vec3::zero() }, ..Sent::default() }
 }
 
 fn at_speed(speed: f64) -> State<f64> {
@@ -96,7 +96,7 @@ fn every_layout_gives_the_wrench_that_is_asked() {
         let vehicle = Vehicle { layout, rotor_speed_min: 0.0, ..vehicle() };
         let mut actuation = plain(&vehicle);
         let torque = body(0.02, -0.03, 0.004);
-        let command = Command { wrench: Wrench { thrust: 7.0, torque }, ..Command::default() };
+        let command = Sent { wrench: Wrench { thrust: 7.0, torque }, ..Sent::default() };
         let refused = actuation.command(&command, &vehicle);
         let Actuation::Propulsion(rotors) = &actuation else { panic!("propulsion") };
         let state = State { rotor_speed: rotors.commanded, ..State::default() };

@@ -10,9 +10,9 @@ use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::{Mask, Real};
 use stormpetrel_control::record;
 use stormpetrel_control::signals::Wrench;
-use stormpetrel_control::stack::{Command, Exit};
+use stormpetrel_control::stack::Exit;
 
-use super::Actuate;
+use super::{Actuate, Sent};
 use super::wrench::IdealWrench;
 use crate::dispatch::rarely;
 use crate::state::State;
@@ -58,8 +58,8 @@ impl<T: Real> Actuate<T> for LaggedWrench<T> {
         Exit::Wrench
     }
     #[inline(always)]
-    fn command(&mut self, command: &Command<T>, vehicle: &Vehicle<T>) -> Wrench<T> {
-        self.ideal.command(command, vehicle)
+    fn command(&mut self, sent: &Sent<T>, vehicle: &Vehicle<T>) -> Wrench<T> {
+        self.ideal.command(sent, vehicle)
     }
     #[inline(always)]
     fn pass(&mut self, h: T) {

@@ -8,7 +8,7 @@ use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record::RecordExt as _;
 use stormpetrel_control::signals::Wrench;
-use stormpetrel_control::stack::{Command, Exit};
+use stormpetrel_control::stack::Exit;
 use stormpetrel_control::{record, registry};
 
 use self::battery::Gauge;
@@ -28,12 +28,22 @@ record! {
     }
 }
 
+record! {
+    /// What is sent to the actuation.
+    pub struct Sent {
+        /// Thrust vector per mass.
+        force: Vec3<T, World> [m/s^2];
+        /// Thrust and torque.
+        wrench: Wrench<T> [];
+    }
+}
+
 /// Turns commands into thrust and torque.
 pub trait Actuate<T: Real>: Plain<T> {
     /// Which level of the stack it listens to.
     fn exit(&self) -> Exit;
-    /// Takes the command for the coming tick; returns the part that it cannot grant.
-    fn command(&mut self, command: &Command<T>, vehicle: &Vehicle<T>) -> Wrench<T>;
+    /// Takes what is sent for the coming tick; returns the part that it cannot grant.
+    fn command(&mut self, sent: &Sent<T>, vehicle: &Vehicle<T>) -> Wrench<T>;
     /// Told of each integration step of `h` seconds beforehand: a lag of its own passes them.
     #[inline(always)]
     fn pass(&mut self, _h: T) {}
@@ -129,8 +139,8 @@ macro_rules! dispatch_actuate {
                 match self { $( Self::$variant(x) => x.exit(), )+ }
             }
             #[inline(always)]
-            fn command(&mut self, command: &Command<T>, vehicle: &Vehicle<T>) -> Wrench<T> {
-                match self { $( Self::$variant(x) => x.command(command, vehicle), )+ }
+            fn command(&mut self, sent: &Sent<T>, vehicle: &Vehicle<T>) -> Wrench<T> {
+                match self { $( Self::$variant(x) => x.command(sent, vehicle), )+ }
             }
             #[inline(always)]
             fn pass(&mut self, h: T) {

@@ -29,12 +29,12 @@ use stormpetrel_control::options::Rows;
 use stormpetrel_control::real::{Mask as _, Real};
 use stormpetrel_control::record::{RecordExt as _, each, from_index};
 use stormpetrel_control::signals::Wrench;
-use stormpetrel_control::stack::{Command, Exit};
+use stormpetrel_control::stack::Exit;
 use stormpetrel_control::{choice, options, record};
 
 use super::battery::{Battery, Gauge};
 use super::curve::{OpenCircuit, RotorCurve, look_up_lanes};
-use super::{Actuate, Load};
+use super::{Actuate, Load, Sent};
 use crate::aerodynamics::through_air;
 use crate::dispatch::rarely;
 use crate::disturbance::RotorFaults;
@@ -227,8 +227,8 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
         Exit::Wrench
     }
     #[inline(always)]
-    fn command(&mut self, command: &Command<T>, _: &Vehicle<T>) -> Wrench<T> {
-        let allocated = self.allocation.allocate(&command.wrench);
+    fn command(&mut self, sent: &Sent<T>, _: &Vehicle<T>) -> Wrench<T> {
+        let allocated = self.allocation.allocate(&sent.wrench);
         let limit = if self.sags { self.battery.limit() } else { T::lit(NO_LIMIT) };
         let (mut short, mut limited) = ([T::zero(); 4], T::zero());
         for i in 0..4 {

@@ -14,9 +14,9 @@ use stormpetrel_control::real::{Mask, Real};
 use stormpetrel_control::record;
 use stormpetrel_control::record::{each, from_index};
 use stormpetrel_control::signals::Wrench;
-use stormpetrel_control::stack::{Command, Exit};
+use stormpetrel_control::stack::Exit;
 
-use super::Actuate;
+use super::{Actuate, Sent};
 use crate::dispatch::rarely;
 use crate::state::State;
 use crate::vehicle::Vehicle;
@@ -103,8 +103,8 @@ impl<T: Real> Actuate<T> for Rotors<T> {
         Exit::Wrench
     }
     #[inline(always)]
-    fn command(&mut self, command: &Command<T>, _: &Vehicle<T>) -> Wrench<T> {
-        let allocated = self.allocation.allocate(&command.wrench);
+    fn command(&mut self, sent: &Sent<T>, _: &Vehicle<T>) -> Wrench<T> {
+        let allocated = self.allocation.allocate(&sent.wrench);
         self.commanded = each(allocated.thrusts, |u| (u * self.per_coefficient).sqrt()); // (1)
         self.saturation = allocated.saturation;
         allocated.refused

@@ -9,9 +9,9 @@ use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
 use stormpetrel_control::record::Nothing;
 use stormpetrel_control::signals::Wrench;
-use stormpetrel_control::stack::{Command, Exit};
+use stormpetrel_control::stack::Exit;
 
-use super::Actuate;
+use super::{Actuate, Sent};
 use crate::state::State;
 use crate::vehicle::Vehicle;
 
@@ -42,8 +42,8 @@ impl<T: Real> Actuate<T> for ThrustVector<T> {
         Exit::Thrust
     }
     #[inline(always)]
-    fn command(&mut self, command: &Command<T>, _: &Vehicle<T>) -> Wrench<T> {
-        self.force = command.thrust.force;
+    fn command(&mut self, sent: &Sent<T>, _: &Vehicle<T>) -> Wrench<T> {
+        self.force = sent.force;
         Wrench::default()
     }
     fn reset(&mut self) {

@@ -9,8 +9,8 @@ use stormpetrel_control::record::{Record as _, RecordExt as _, blend, same};
 use stormpetrel_control::signals::{Applied, Measurement, Model, Thrust, Trajectory, Wrench};
 use stormpetrel_control::stack::{Command, Stack};
 
-use crate::actuation::{Actuate, Actuation};
-use crate::disturbance::{MOST, Source};
+use crate::actuation::{Actuate, Actuation, Sent};
+use crate::disturbance::{MOST, RotorFaults, Source};
 use crate::dynamics::{Held, Push, Reciprocals, acceleration};
 use crate::reference::{Refer, Reference};
 use crate::sensor::Sensing;
@@ -163,6 +163,8 @@ record! {
         hanging: Hanging<T> [];
         /// What stays constant over the tick, where more than pushes disturbs.
         conditions: Conditions<T> [];
+        /// Broken rotors.
+        faults: RotorFaults<T> [];
         /// Thrust that the laws expect over the true one.
         belief: T [1];
         /// True mass over the mass that the laws believe.
@@ -171,6 +173,8 @@ record! {
         thrust_per_mass: Vec3<T, World> [m/s^2];
         /// What the laws decided at the last tick, where commands may be late.
         decided: Command<T> [];
+        /// Thrust per mass that was sent to the rotors at the last tick.
+        pull: Vec3<T, World> [m/s^2];
         /// What the allocation refused at the last tick.
         unallocated: Wrench<T> [];
         /// 1 while flying, 0 once failed.
@@ -206,6 +210,7 @@ impl Flight<f64> {
         self.timing.reset(self.model.mass, self.model.gravity);
         self.unallocated = Wrench::default();
         self.conditions = Conditions::new(&self.per, &Push::default());
+        self.faults = RotorFaults::none();
         (self.alive, self.cause, self.flown) = (1.0, 0.0, 0.0);
         self.tick = 0;
         self.stack.reset(&self.measure());
@@ -254,19 +259,17 @@ impl<T: Real> Flight<T> {
     pub fn decide(&mut self) -> Tick<T> {
         let time = self.time();
         let reference = self.reference.at(time);
-        let around = self.surroundings();
-        if self.cares.any() {
-            self.prepare(around);
-        }
+        let push = self.surroundings();
         let estimate = self.stack.estimate() * self.model.mass;
         let told = self.measurement();
-        let command = self.command(&told, &reference);
-        self.unallocated = self.actuation.command(&command, &self.vehicle);
+        let sent = self.command(&told, &reference);
+        self.unallocated = self.actuation.command(&sent, &self.vehicle);
+        self.pull = sent.force;
         if self.cares.propulsion {
-            self.actuation.suffer(&around.rotors, &self.state, self.control_step);
+            self.actuation.suffer(&self.faults, &self.state, self.control_step);
         }
         self.thrust_per_mass = self.actuation.thrust_per_mass(&self.state, &self.vehicle);
-        let wind = around.wind;
+        let wind = self.conditions.wind;
         let (applied, air, lumped, cargo) = if self.cares.any() {
             let seen = self.look();
             let Push { force, torque } = seen.air;
@@ -274,10 +277,10 @@ impl<T: Real> Flight<T> {
             (seen.rotors, Air { wind, force, torque }, lumped, self.hanging.place)
         } else {
             let still = Air { wind, ..Air::default() };
-            (self.actuation.wrench(&self.state), still, self.lumped(&around.push), Vec3::zero())
+            (self.actuation.wrench(&self.state), still, self.lumped(&push), Vec3::zero())
         };
         let State { position, velocity, attitude, rate, rotor_speed } = self.state;
-        let Push { force, torque } = around.push;
+        let Push { force, torque } = push;
         Tick {
             time,
             position,
@@ -286,7 +289,7 @@ impl<T: Real> Flight<T> {
             rate,
             rotor_speed,
             reference,
-            command,
+            command: self.commanded(&sent),
             applied,
             disturbance: Disturbed { force, torque, lumped },
             air,
@@ -303,25 +306,34 @@ impl<T: Real> Flight<T> {
         }
     }
 
-    /// What the laws decide, and what of it reaches the rotors at this tick.
+    /// The laws decide; gives what is sent to the rotors at this tick.
     #[inline(always)]
-    fn command(&mut self, told: &Measurement<T>, reference: &Trajectory<T>) -> Command<T> {
-        let dt = self.control_step;
+    fn command(&mut self, told: &Measurement<T>, reference: &Trajectory<T>) -> Sent<T> {
         let before = if self.timing.drops { Some(self.stack) } else { None };
-        let thrust = self.stack.act(told, reference, dt);
-        // Written once, where it stays: of two branches that each make one, one may be copied.
-        let mut command = self.stack.command(thrust);
+        let force = self.stack.act(told, reference, self.control_step);
+        let mut sent = Sent { force, wrench: self.stack.wrench() };
         if self.timing.late {
-            command = self.late(&same(&thrust), before);
+            sent = same(&self.late(before));
         }
-        command
+        sent
     }
 
-    /// [`Flight::command`] where commands may be late: the laws ask for `thrust`, and were as `before` where
-    /// ticks may be dropped.
+    /// What every level asked for at this tick, and what of it was `sent`. Only who looks on needs all of
+    /// this; the loop itself is content with what is sent.
+    #[inline(always)]
+    fn commanded(&self, sent: &Sent<T>) -> Command<T> {
+        if self.timing.late {
+            let thrust = Thrust { force: sent.force, ..self.decided.thrust };
+            Command { thrust, wrench: sent.wrench, ..self.decided }
+        } else {
+            self.stack.command()
+        }
+    }
+
+    /// [`Flight::command`] where commands may be late: the laws were as `before` where ticks may be dropped.
     #[inline(never)]
-    fn late(&mut self, thrust: &Thrust<T>, before: Option<Stack<T>>) -> Command<T> {
-        let (mut decided, tick) = (self.stack.command(*thrust), self.ticks());
+    fn late(&mut self, before: Option<Stack<T>>) -> Sent<T> {
+        let (mut decided, tick) = (self.stack.command(), self.ticks());
         if let Some(before) = before {
             // Where the tick is dropped, the laws have not run: they and their command are as before.
             let dropped = self.timing.dropped(tick);
@@ -329,7 +341,8 @@ impl<T: Real> Flight<T> {
             decided = blend(dropped, &self.decided, &decided);
         }
         self.decided = decided;
-        self.timing.pass(&decided, tick, self.tick, self.control_step)
+        let sent = Sent { force: decided.thrust.force, wrench: decided.wrench };
+        self.timing.pass(&sent, tick, self.tick, self.control_step)
     }
 
     /// m_law (a + g_law e_z) - T_law R e_z from the true acceleration, N.
@@ -349,16 +362,10 @@ impl<T: Real> Flight<T> {
 
     /// What drove the vehicle, as an observer may know it: the law's own mass and gravity.
     #[inline(always)]
-    fn applied(&self, command: &Command<T>) -> Applied<T> {
-        let mut applied = Applied::default();
-        for i in 0..T::LANES {
-            let (force, thrust) = (command.thrust.force.pick(i), self.thrust_per_mass.pick(i));
-            let weight = Vec3::up(self.model.gravity.lane(i));
-            let ratio = self.mass_ratio.lane(i) * self.belief.lane(i);
-            let (commanded, measured) = (force - weight, thrust * ratio - weight);
-            Applied { commanded, measured }.put(&mut applied, i);
-        }
-        applied
+    fn applied(&self) -> Applied<T> {
+        let (weight, ratio) = (Vec3::up(self.model.gravity), self.mass_ratio * self.belief);
+        let (commanded, measured) = (self.pull - weight, self.thrust_per_mass * ratio - weight);
+        Applied { commanded, measured }
     }
 
     /// Observer and plant over the tick that `decide` began. A failed flight stands still.
@@ -366,7 +373,7 @@ impl<T: Real> Flight<T> {
     pub fn advance(&mut self, tick: &Tick<T>) {
         let dt = self.control_step;
         self.judge(tick);
-        let applied = self.applied(&tick.command);
+        let applied = self.applied();
         self.stack.advance(&applied, dt);
 
         let h = dt * T::lit(1.0 / f64::from(self.substeps));

@@ -3,6 +3,7 @@
 use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
+use stormpetrel_control::record::same;
 use stormpetrel_control::signals::Measurement;
 
 use super::Flight;
@@ -108,26 +109,42 @@ impl<T: Real> Flight<T> {
         }
     }
 
-    /// Asks every disturbance. The plainest one is asked in the loop itself.
+    /// What pushes the vehicle over this tick. The plainest disturbance is asked in the loop itself; the
+    /// rest of the world is prepared where there is any.
     #[inline(always)]
-    pub(super) fn surroundings(&mut self) -> Surroundings<T> {
-        let mut all = Surroundings { rotors: RotorFaults::none(), ..Surroundings::default() };
+    pub(super) fn surroundings(&mut self) -> Push<T> {
+        let mut push = Push::default();
         let (time, mass) = (self.time(), self.vehicle.mass);
         for source in self.disturbance.iter().take(self.cares.sources) {
-            if let Some(push) = source.harmonic(time, mass) {
-                all.push.add(&push);
+            if let Some(one) = source.harmonic(time, mass) {
+                push.add(&one);
             }
         }
-        if self.cares.more {
-            let scene = self.scene();
-            all = survey(&mut self.disturbance, scene, all);
+        if self.cares.more || self.cares.any() {
+            push = self.prepare(&same(&push));
         }
-        all
+        push
     }
 
-    /// Prepares what stays constant over the tick, and the vehicle with its load.
+    /// Asks every disturbance beside the harmonic ones, which `push` already, and prepares what stays
+    /// constant over the tick; gives the sum of all pushes.
     #[inline(never)]
-    pub(super) fn prepare(&mut self, around: Surroundings<T>) {
+    fn prepare(&mut self, push: &Push<T>) -> Push<T> {
+        let calm = Surroundings { rotors: RotorFaults::none(), ..Surroundings::default() };
+        let mut around = Surroundings { push: *push, ..calm };
+        if self.cares.more {
+            let scene = self.scene();
+            around = survey(&mut self.disturbance, scene, around);
+        }
+        if self.cares.any() {
+            self.lade(&around);
+        }
+        (self.faults, self.conditions.wind) = (around.rotors, around.wind);
+        around.push
+    }
+
+    /// Prepares the vehicle with its load.
+    fn lade(&mut self, around: &Surroundings<T>) {
         let Cargo { mass, place } = around.cargo;
         let (mut per, mut share, mut shift) = (self.per, T::one(), self.vehicle.center_of_mass);
         if self.cares.laden {
@@ -148,7 +165,6 @@ impl<T: Real> Flight<T> {
             self.hanging = around.sling.attach(&self.hanging);
         }
         self.conditions = Conditions {
-            wind: around.wind,
             sling: around.sling,
             share,
             shift,
