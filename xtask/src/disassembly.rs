@@ -17,7 +17,7 @@ const WIDTHS: [(&str, [&str; 2], &str); 3] = [
 ];
 
 /// What the loop may call: names of C in full, of Rust in part.
-const ALLOWED: [&str; 10] = [
+const ALLOWED: [&str; 11] = [
     // Copies of whole records.
     "memcpy",
     "memmove",
@@ -25,6 +25,7 @@ const ALLOWED: [&str; 10] = [
     // Only where an input, a law or a state is not finite, or a lane is empty.
     "::settle",
     "::mend",
+    "::restart",
     "Record::finite",
     // Only where the loop is left by a panic.
     "_Unwind_Resume",

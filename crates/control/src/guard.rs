@@ -113,21 +113,22 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
 pub struct GuardedObserver<T, Law> {
     /// The observer inside.
     pub law: Law,
-    last: Measurement<T>,
+    /// 1 where the observer begins anew at the next good measurement.
+    lost: T,
     /// 1 where the last tick was ignored or mended, else 0.
     pub flag: T,
 }
 
 impl<T: Real, L: Default> Default for GuardedObserver<T, L> {
     fn default() -> Self {
-        Self { law: L::default(), last: Measurement::default(), flag: T::zero() }
+        Self { law: L::default(), lost: T::zero(), flag: T::zero() }
     }
 }
 
 impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
     /// Guards the observer.
     pub fn new(law: O) -> Self {
-        Self { law, last: Measurement::default(), flag: T::zero() }
+        Self { law, lost: T::zero(), flag: T::zero() }
     }
 
     /// [`Observer::estimate`], finite and within the limit.
@@ -148,10 +149,11 @@ impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
     #[inline(always)]
     pub fn correct_checked(&mut self, input: Good<T>, measurement: &Measurement<T>, dt: T) {
         self.flag = T::zero();
+        if !self.lost.eq(T::zero()).all() {
+            self.restart(input.lanes, &same(measurement));
+        }
         let before = if input.all { None } else { Some(self.law) };
         let sum = self.law.correct_summed(measurement, dt);
-        self.last =
-            if input.all { same(measurement) } else { blend(input.lanes, measurement, &self.last) };
         self.check(input, sum, before);
     }
 
@@ -166,9 +168,21 @@ impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
 
     /// [`Observer::reset`].
     pub fn reset(&mut self, measurement: &Measurement<T>) {
-        self.last = mended(measurement, &Measurement::default());
-        self.law.reset(&self.last);
-        self.flag = T::zero();
+        self.law.reset(&mended(measurement, &Measurement::default()));
+        (self.lost, self.flag) = (T::zero(), T::zero());
+    }
+
+    /// Begins anew where the observer was lost and the measurement is good; where it was lost, this tick is
+    /// mended and says so.
+    #[cold]
+    #[inline(never)]
+    fn restart(&mut self, good: T::Mask, measurement: &Measurement<T>) {
+        let sound = self.lost.eq(T::zero());
+        self.flag = T::select(sound, T::zero(), T::one());
+        let mut fresh = self.law;
+        fresh.reset(&mended(measurement, &Measurement::default()));
+        self.law = blend(good & !sound, &fresh, &self.law);
+        self.lost = T::select(sound | good, T::zero(), T::one());
     }
 
     #[inline(always)]
@@ -178,7 +192,8 @@ impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
         }
     }
 
-    /// Takes the state from before a bad input, and resets what of it is not finite.
+    /// Takes the state from before a bad input. What of it is not finite rests until the next good
+    /// measurement, with which the observer begins anew.
     #[cold]
     #[inline(never)]
     fn mend(&mut self, good: T::Mask, input: T::Mask, before: Option<O>) {
@@ -186,9 +201,10 @@ impl<T: Real, O: Observer<T>> GuardedObserver<T, O> {
         if let Some(before) = before {
             self.law = blend(input, &self.law, &before);
         }
-        let mut fresh = self.law;
-        fresh.reset(&self.last);
-        self.law = mended(&self.law, &fresh);
+        self.lost = T::select(self.law.finite(), self.lost, T::one());
+        let mut rest = self.law;
+        rest.reset(&Measurement::default());
+        self.law = mended(&self.law, &rest);
     }
 }
 
@@ -249,21 +265,21 @@ pub fn mended<T: Real, R: Plain<T>>(record: &R, spare: &R) -> R {
     R::zip([record, spare], &mut |[x, y]| T::select(x.is_finite(), x, y))
 }
 
-/// A guard is a record like any other; what it holds shows as `held` and `flag`.
+/// A guard is a record like any other; what it remembers shows beside its `flag`.
 macro_rules! guard_record {
-    ($guard:ident, $law:ident $($command:ident)?, $held:ty) => {
+    ($guard:ident, $law:ident $($command:ident)?, $kept:ident: $type:ty as $name:literal) => {
         impl<T: Real, $law: Record<T> $(, $command: Record<T>)?> Record<T> for $guard<T, $law $(, $command)?> {
             type With<U: Real> = $guard<U, $law::With<U> $(, $command::With<U>)?>;
             #[inline(always)]
             fn visit(&self, path: &Path<'_>, meta: &Meta, v: &mut impl Visitor<T>) {
                 self.law.visit(path, meta, v);
-                self.last.visit(&path.join("held"), meta, v);
+                self.$kept.visit(&path.join($name), &KEPT, v);
                 v.number(&path.join("flag"), &FLAG, self.flag);
             }
             #[inline(always)]
             fn visit_mut(&mut self, path: &Path<'_>, meta: &Meta, v: &mut impl VisitorMut<T>) {
                 self.law.visit_mut(path, meta, v);
-                self.last.visit_mut(&path.join("held"), meta, v);
+                self.$kept.visit_mut(&path.join($name), &KEPT, v);
                 v.number(&path.join("flag"), &FLAG, &mut self.flag);
             }
             #[inline(always)]
@@ -273,7 +289,7 @@ macro_rules! guard_record {
             ) -> Self::With<U> {
                 $guard {
                     law: $law::zip(each(rows, |row| &row.law), f),
-                    last: <$held>::zip(each(rows, |row| &row.last), f),
+                    $kept: <$type>::zip(each(rows, |row| &row.$kept), f),
                     flag: f(each(rows, |row| row.flag)),
                 }
             }
@@ -281,7 +297,7 @@ macro_rules! guard_record {
             fn pick_lane(&self, i: usize) -> Self::With<T::Scalar> {
                 $guard {
                     law: self.law.pick_lane(i),
-                    last: self.last.pick_lane(i),
+                    $kept: self.$kept.pick_lane(i),
                     flag: self.flag.lane(i),
                 }
             }
@@ -293,19 +309,21 @@ macro_rules! guard_record {
                 f: &mut impl FnMut(T) -> T,
             ) {
                 self.law.put_mapped(&mut batch.law, i, f);
-                self.last.put_mapped(&mut batch.last, i, f);
+                self.$kept.put_mapped(&mut batch.$kept, i, f);
                 batch.flag.set_lane(i, f(self.flag));
             }
             #[inline(always)]
             fn each_variable(&self, f: &mut impl FnMut(T)) {
                 self.law.each_variable(f);
-                self.last.each_variable(f);
+                self.$kept.each_variable(f);
                 f(self.flag);
             }
         }
     };
 }
-guard_record! { Guarded, L C, C }
-guard_record! { GuardedObserver, L, Measurement<T> }
+guard_record! { Guarded, L C, last: C as "held" }
+guard_record! { GuardedObserver, L, lost: T as "lost" }
 
+const KEPT: Meta =
+    Meta::signal("1", "1 where the observer begins anew at the next good measurement.");
 const FLAG: Meta = Meta::signal("1", "1 where the law held its last good value.");
