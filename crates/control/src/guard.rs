@@ -34,12 +34,10 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
         dt: T,
     ) -> L::Command {
         let input = passing(measurement, dt).and(finite(reference));
-        self.update_checked(input, measurement, reference, dt);
-        self.last
+        self.update_checked(input, measurement, reference, dt)
     }
 
-    /// [`Guarded::update`] where the caller knows already in which lanes the `input` is good; the command
-    /// is [`Guarded::held`].
+    /// [`Guarded::update`] where the caller knows already in which lanes the `input` is good.
     #[inline(always)]
     pub fn update_checked(
         &mut self,
@@ -47,7 +45,7 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
         measurement: &Measurement<T>,
         reference: &L::Reference,
         dt: T,
-    ) {
+    ) -> L::Command {
         // Whether all is well decides only what need not be computed: the results are the same.
         let before = if input.all { None } else { Some(self.law) };
         self.law.tune(dt);
@@ -56,10 +54,19 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
         // Numbers whose magnitudes together are within the limit are finite, and within it one by one.
         if input.all && weight.le(limit).all() {
             (self.last, self.flag) = (same(&command), T::zero());
+            command
         } else {
             // Copies: what a call may look at does not stay in registers.
             self.settle(&same(&command), limit, input.lanes, before, &same(measurement));
+            same(&self.last)
         }
+    }
+
+    /// What was `granted` just now, for the level below: as it is for one vehicle, where it stays in registers; as
+    /// it is kept for many, who live in memory anyway.
+    #[inline(always)]
+    pub fn handed<'a>(&'a self, granted: &'a L::Command) -> &'a L::Command {
+        if T::LANES == 1 { granted } else { &self.last }
     }
 
     /// The last command that was granted.

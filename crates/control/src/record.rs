@@ -227,6 +227,12 @@ pub fn same<T: Real, R: Record<T, With<T> = R>>(record: &R) -> R {
     R::zip([record], &mut |[x]| x)
 }
 
+/// The same record, copied as [`same`] does for one vehicle; as a whole for many, who live in memory anyway.
+#[inline(always)]
+pub fn near<T: Real, R: Record<T, With<T> = R> + Copy>(record: &R) -> R {
+    if T::LANES == 1 { same(record) } else { *record }
+}
+
 /// What `look` answers about the record. A call may look at it: then one vehicle's record is copied for it,
 /// since what a call looks at does not stay in registers; those of many vehicles live in memory anyway.
 #[inline(always)]

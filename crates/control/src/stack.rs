@@ -154,7 +154,7 @@ impl<T: Real> Stack<T> {
         measurement: &Measurement<T>,
         trajectory: &Trajectory<T>,
         dt: T,
-    ) -> Vec3<T, World> {
+    ) -> (Vec3<T, World>, Wrench<T>) {
         let Rhythm { position: slow, attitude: middle, rate: fast } = self.every;
         let longer = |every: u32| if every == 1 { dt } else { dt * T::lit(f64::from(every)) };
         let input = passing(measurement, dt);
@@ -166,20 +166,22 @@ impl<T: Real> Stack<T> {
         }
         let thrust = self.thrust();
         if self.exit == Exit::Thrust {
-            return thrust.force;
+            return (thrust.force, self.wrench());
         }
+        let (mut rate, mut wrench) = (same(self.attitude.held()), self.wrench());
         // What a guard or the observer grants is finite: the levels below need not ask again.
         if self.due(middle) {
             let dt = longer(middle);
-            self.attitude_reference.update_checked(input, measurement, &thrust, dt);
-            let attitude = self.attitude_reference.held();
-            self.attitude.update_checked(input, measurement, attitude, dt);
+            let attitude = self.attitude_reference.update_checked(input, measurement, &thrust, dt);
+            let attitude = self.attitude_reference.handed(&attitude);
+            rate = self.attitude.update_checked(input, measurement, attitude, dt);
         }
         if self.due(fast) {
-            let rate = self.attitude.held();
-            self.rate.update_checked(input, measurement, rate, longer(fast));
+            let (rate, dt) = (self.attitude.handed(&rate), longer(fast));
+            wrench = self.rate.update_checked(input, measurement, rate, dt);
         }
-        thrust.force
+        let wrench = same(self.rate.handed(&wrench));
+        (thrust.force, wrench)
     }
 
     /// What every level asks for.

@@ -5,7 +5,7 @@ mod surroundings;
 use stormpetrel_control::math::{Body, Rotation, Vec3, World};
 use stormpetrel_control::real::{Mask, Real};
 use stormpetrel_control::record;
-use stormpetrel_control::record::{Record as _, RecordExt as _, blend, same};
+use stormpetrel_control::record::{Record as _, RecordExt as _, blend, near, same};
 use stormpetrel_control::signals::{Applied, Measurement, Model, Thrust, Trajectory, Wrench};
 use stormpetrel_control::stack::{Command, Stack};
 
@@ -227,8 +227,15 @@ impl<T: Real> Flight<T> {
     fn measure(&self) -> Measurement<T> {
         let Wrench { thrust, torque } = self.actuation.wrench(&self.state);
         let achieved = Wrench { thrust: thrust * self.belief, torque: torque * self.belief };
-        let State { position, velocity, attitude, rate, .. } = self.state;
-        Measurement { position, velocity, attitude, rate, achieved, unallocated: self.unallocated }
+        let State { position, velocity, attitude, rate, .. } = &self.state;
+        Measurement {
+            position: near(position),
+            velocity: near(velocity),
+            attitude: near(attitude),
+            rate: near(rate),
+            achieved,
+            unallocated: near(&self.unallocated),
+        }
     }
 
     /// What the laws are told: the truth, or what sensors and filter make of it.
@@ -310,8 +317,8 @@ impl<T: Real> Flight<T> {
     #[inline(always)]
     fn command(&mut self, told: &Measurement<T>, reference: &Trajectory<T>) -> Sent<T> {
         let before = if self.timing.drops { Some(self.stack) } else { None };
-        let force = self.stack.act(told, reference, self.control_step);
-        let mut sent = Sent { force, wrench: self.stack.wrench() };
+        let (force, wrench) = self.stack.act(told, reference, self.control_step);
+        let mut sent = Sent { force, wrench };
         if self.timing.late {
             sent = same(&self.late(before));
         }
