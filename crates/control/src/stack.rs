@@ -147,7 +147,7 @@ impl<T: Real> Stack<T> {
         self.command()
     }
 
-    /// [`Stack::update`] that gives the thrust per mass only; [`Stack::command`] tells the rest.
+    /// [`Stack::update`] that gives only the thrust per mass and the wrench; [`Stack::command`] tells the rest.
     #[inline(always)]
     pub fn act(
         &mut self,

@@ -356,7 +356,7 @@ fn throughput() {
     for width in Width::available() {
         // Few registers hold few chains: eight lanes are one register or four.
         let peaks = [peak::<2>(width), peak::<3>(width), peak::<5>(width), peak::<10>(width)];
-        let best = peaks.into_iter().fold(0.0, f64::max);
+        let best = peaks.into_iter().fold(0.0, Real::max);
         say(&format!("| {} | {best:.1} |", width.name()));
     }
 }
