@@ -274,19 +274,19 @@ pub fn mended<T: Real, R: Plain<T>>(record: &R, spare: &R) -> R {
 
 /// A guard is a record like any other; what it remembers shows beside its `flag`.
 macro_rules! guard_record {
-    ($guard:ident, $law:ident $($command:ident)?, $kept:ident: $type:ty as $name:literal) => {
+    ($guard:ident, $law:ident $($command:ident)?, $kept:ident: $type:ty as $name:literal, $about:literal) => {
         impl<T: Real, $law: Record<T> $(, $command: Record<T>)?> Record<T> for $guard<T, $law $(, $command)?> {
             type With<U: Real> = $guard<U, $law::With<U> $(, $command::With<U>)?>;
             #[inline(always)]
             fn visit(&self, path: &Path<'_>, meta: &Meta, v: &mut impl Visitor<T>) {
                 self.law.visit(path, meta, v);
-                self.$kept.visit(&path.join($name), &KEPT, v);
+                self.$kept.visit(&path.join($name), &Meta::signal("1", $about), v);
                 v.number(&path.join("flag"), &FLAG, self.flag);
             }
             #[inline(always)]
             fn visit_mut(&mut self, path: &Path<'_>, meta: &Meta, v: &mut impl VisitorMut<T>) {
                 self.law.visit_mut(path, meta, v);
-                self.$kept.visit_mut(&path.join($name), &KEPT, v);
+                self.$kept.visit_mut(&path.join($name), &Meta::signal("1", $about), v);
                 v.number(&path.join("flag"), &FLAG, &mut self.flag);
             }
             #[inline(always)]
@@ -328,9 +328,10 @@ macro_rules! guard_record {
         }
     };
 }
-guard_record! { Guarded, L C, last: C as "held" }
-guard_record! { GuardedObserver, L, lost: T as "lost" }
+guard_record! { Guarded, L C, last: C as "held", "The last command that was granted." }
+guard_record! {
+    GuardedObserver, L,
+    lost: T as "lost", "1 where the observer begins anew at the next good measurement."
+}
 
-const KEPT: Meta =
-    Meta::signal("1", "1 where the observer begins anew at the next good measurement.");
 const FLAG: Meta = Meta::signal("1", "1 where the law held its last good value.");
