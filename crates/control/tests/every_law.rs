@@ -22,7 +22,7 @@ use stormpetrel_control::real::Real;
 use stormpetrel_control::record::{Record, RecordExt};
 use stormpetrel_control::registry::Settings;
 use stormpetrel_control::signals::{Applied, Measurement};
-use stormpetrel_control::stack::{Laws, Stack};
+use stormpetrel_control::stack::{Exit, Laws, Rhythm, Stack};
 
 const LANES: usize = 8;
 type Wide = Lanes<f64, LANES>;
@@ -138,7 +138,10 @@ fn eight_stacks_have_the_bits_of_eight_single_ones() {
         (every::<ObserverSettings>(), every::<AttitudeLawSettings>(), every::<RateLawSettings>());
     // Each alternative of each level at least once; the levels are tested one by one above.
     let most = [positions.len(), references.len(), observers.len(), attitudes.len(), rates.len()];
-    for n in 0..most.into_iter().max().unwrap_or(0) {
+    for (n, rhythm) in (0..most.into_iter().max().unwrap_or(0)).flat_map(|n| {
+        let slower = Rhythm { position: 4, attitude: 2, rate: 1 };
+        [(n, Rhythm::default()), (n, slower), (n, Rhythm { rate: 3, ..slower })]
+    }) {
         let mut singles: [Stack<f64>; LANES] = core::array::from_fn(|i| {
             let (m, i) = (model(), i as u64);
             let laws = Laws {
@@ -148,11 +151,7 @@ fn eight_stacks_have_the_bits_of_eight_single_ones() {
                 attitude: scattered(attitudes[n % attitudes.len()].1, i).build(&m),
                 rate: scattered(rates[n % rates.len()].1, i).build(&m),
             };
-            Stack::new(
-                laws,
-                stormpetrel_control::stack::Exit::Wrench,
-                stormpetrel_control::stack::Rhythm::default(),
-            )
+            Stack::new(laws, Exit::Wrench, rhythm)
         });
         let mut lanes: Stack<Wide> =
             RecordExt::<f64>::gather(core::array::from_fn(|i| &singles[i]));
@@ -168,7 +167,14 @@ fn eight_stacks_have_the_bits_of_eight_single_ones() {
             );
             lanes.advance(&RecordExt::<f64>::gather(core::array::from_fn(|i| &u[i])), dt);
             for (i, single) in singles.iter_mut().enumerate() {
+                let sent = { *single }.act(&m[i], &r[i], dt.lane(i));
                 let one = single.update(&m[i], &r[i], dt.lane(i));
+                assert_eq!(
+                    bits(&sent.0),
+                    bits(&one.thrust.force),
+                    "stack {n}, lane {i}, tick {tick}"
+                );
+                assert_eq!(bits(&sent.1), bits(&one.wrench), "stack {n}, lane {i}, tick {tick}");
                 single.advance(&u[i], dt.lane(i));
                 assert_eq!(bits(&command.pick(i)), bits(&one), "stack {n}, lane {i}, tick {tick}");
                 assert_eq!(bits(&lanes.pick(i)), bits(single), "stack {n}, lane {i}, tick {tick}");
