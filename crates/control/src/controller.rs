@@ -35,8 +35,14 @@ pub trait Controller<T: Real>: Plain<T> {
         dt: T,
     ) -> (Self::Command, T) {
         let command = self.update(measurement, reference, dt);
-        let weight = command.magnitude() + (self.sum(|x| x) + self.limit()) * T::zero();
+        let weight = command.magnitude() + (self.hidden() + self.limit()) * T::zero();
         (command, weight)
+    }
+    /// Sum of the state after an update, without what shows in the command anyway: numbers whose loss
+    /// leaves no finite command, and those that a good input has just replaced.
+    #[inline(always)]
+    fn hidden(&self) -> T {
+        self.sum(|x| x)
     }
     /// Forgets the past, as if the flight began with this measurement.
     fn reset(&mut self, measurement: &Measurement<T>);

@@ -67,6 +67,13 @@ impl<T: Real> Butterworth<T> {
         self.sample_time = sample_time;
     }
 
+    /// Sum of what the filter keeps for its next value.
+    #[inline(always)]
+    pub fn kept(&self) -> T {
+        let Vec3 { x, y, z, .. } = self.s1 + self.s2;
+        x + y + z
+    }
+
     /// The filtered value.
     #[inline(always)]
     pub fn update(&mut self, x: Vec3<T, Body>) -> Vec3<T, Body> {

@@ -5,9 +5,10 @@
 //!   q' = 1/2 q (x) (0, omega)                                            (3)
 //!   I omega' = -omega x I omega + tau + d_tau                            (4)
 //!
-//! a_T is the rotors' thrust per mass. The quaternion replaces the article's Euler angles, which are
-//! singular at 90 deg of pitch; the force disturbance enters divided by the mass, which the article
-//! forgets. Classical Runge-Kutta of order 4; the quaternion is normalised after every step. The rotors
+//! a_T is the rotors' thrust per mass. In principal axes (4) is one line for each, the others in turn:
+//!   I_x omega_x' = (I_y - I_z) omega_y omega_z + tau_x + d_tau_x         (5)
+//! The quaternion replaces the article's Euler angles, which are singular at 90 deg of pitch; the force
+//! disturbance enters divided by the mass, which the article forgets. Classical Runge-Kutta of order 4; the quaternion is normalised after every step. The rotors
 //! follow their commands whatever the body does, so their speeds at the three stages are exact.
 
 use stormpetrel_control::math::{Body, Vec3, World};
@@ -97,24 +98,24 @@ pub fn derivative<T: Real>(
     Derivative {
         position: state.velocity,                                            // (1)
         velocity: acceleration(thrust, held.push_per_mass, vehicle.gravity), // (2)
-        attitude: quaternion_rate(state),                                    // (3)
-        rate: angular_acceleration(state, vehicle, held, torque),            // (4)
+        attitude: spin(state),                                               // (3)
+        rate: angular_acceleration(state, vehicle, held, torque),            // (5)
     }
 }
 
-/// Derivative of the quaternion (3).
+/// q (x) (0, omega): twice the derivative of the quaternion (3).
 #[inline(always)]
-pub fn quaternion_rate<T: Real>(state: &State<T>) -> [T; 4] {
-    let (q, half) = (state.attitude, state.rate * T::lit(0.5));
+pub fn spin<T: Real>(state: &State<T>) -> [T; 4] {
+    let (q, w) = (state.attitude, state.rate);
     [
-        -(q.x * half.x + q.y * half.y + q.z * half.z),
-        q.w * half.x + q.y * half.z - q.z * half.y,
-        q.w * half.y + q.z * half.x - q.x * half.z,
-        q.w * half.z + q.x * half.y - q.y * half.x,
+        -(q.x * w.x + q.y * w.y + q.z * w.z),
+        q.w * w.x + q.y * w.z - q.z * w.y,
+        q.w * w.y + q.z * w.x - q.x * w.z,
+        q.w * w.z + q.x * w.y - q.y * w.x,
     ]
 }
 
-/// Angular acceleration under this torque (4).
+/// Angular acceleration under this torque (5).
 #[inline(always)]
 pub fn angular_acceleration<T: Real>(
     state: &State<T>,
@@ -122,9 +123,10 @@ pub fn angular_acceleration<T: Real>(
     held: &Held<T>,
     torque: Vec3<T, Body>,
 ) -> Vec3<T, Body> {
-    let omega = state.rate;
-    let gyroscopic = omega.cross(omega.scale(vehicle.inertia));
-    (torque - gyroscopic).scale(held.per_inertia)
+    let (w, i) = (state.rate, vehicle.inertia);
+    let products = Vec3::new(w.y * w.z, w.z * w.x, w.x * w.y);
+    let gyroscopic = products.scale(Vec3::new(i.y - i.z, i.z - i.x, i.x - i.y));
+    (torque + gyroscopic).scale(held.per_inertia)
 }
 
 /// One Runge-Kutta step of `h` seconds; `actuation` has let them pass.

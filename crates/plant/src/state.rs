@@ -27,7 +27,7 @@ record! {
         position: Vec3<T, World> [m/s];
         /// Acceleration.
         velocity: Vec3<T, World> [m/s^2];
-        /// Derivative of the quaternion, w x y z.
+        /// Twice the derivative of the quaternion, w x y z.
         attitude: [T; 4] [1/s];
         /// Angular acceleration.
         rate: Vec3<T, Body> [rad/s^2];
@@ -39,12 +39,16 @@ impl<T: Real> State<T> {
     /// not normalised.
     #[inline(always)]
     pub fn along(&self, d: &Derivative<T>, h: T, rotor_speed: [T; 4]) -> Self {
-        let q = self.attitude;
-        let [w, x, y, z] = d.attitude;
+        let (q, [w, x, y, z], half) = (self.attitude, d.attitude, h.half());
         Self {
             position: self.position + d.position * h,
             velocity: self.velocity + d.velocity * h,
-            attitude: Rotation::from_quaternion(q.w + w * h, q.x + x * h, q.y + y * h, q.z + z * h),
+            attitude: Rotation::from_quaternion(
+                q.w + w * half,
+                q.x + x * half,
+                q.y + y * half,
+                q.z + z * half,
+            ),
             rate: self.rate + d.rate * h,
             rotor_speed,
         }

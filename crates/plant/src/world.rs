@@ -22,9 +22,7 @@ use stormpetrel_control::signals::Wrench;
 use crate::actuation::{Actuate as _, Actuation, Load};
 use crate::aerodynamics::drag;
 use crate::dispatch::{Work, wide};
-use crate::dynamics::{
-    Held, Push, Reciprocals, acceleration, angular_acceleration, quaternion_rate,
-};
+use crate::dynamics::{Held, Push, Reciprocals, acceleration, angular_acceleration, spin};
 use crate::sling::{Hanging, Sling, hang};
 use crate::state::{Derivative, State};
 use crate::vehicle::Vehicle;
@@ -232,7 +230,7 @@ fn newton_euler<T: Real>(
     Derivative {
         position: state.velocity,
         velocity: a + air.force * conditions.per_mass, // (1)
-        attitude: quaternion_rate(state),
+        attitude: spin(state),
         rate: angular_acceleration(state, vehicle, held, torque), // (2)
     }
 }

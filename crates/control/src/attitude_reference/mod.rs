@@ -6,6 +6,7 @@ use crate::math::Body;
 use crate::math::{Rotation, Vec3, World};
 use crate::real::{Mask, Real};
 use crate::record;
+use crate::record::{RecordExt as _, same};
 use crate::signals::{Measurement, Model, Thrust};
 use crate::{dispatch_controller, registry};
 
@@ -59,6 +60,60 @@ pub fn attitude_along<T: Real>(force: Vec3<T, World>, yaw: T) -> Rotation<T, Bod
     attitude_beside(force, &Heading { sin, cos }, Vec3::new(cos, sin, T::zero()))
 }
 
+record! {
+    /// Where a reference points: vectors along two of its axes, of any length.
+    struct Pointing {
+        /// Along `b_z`: the thrust vector.
+        force: Vec3<T, World> [m/s^2];
+        /// Along `b_x`.
+        side: Vec3<T, World> [m/s^2];
+        /// Square of the thrust vector's length.
+        length_squared: T [m^2/s^4];
+    }
+}
+
+impl<T: Real> Pointing<T> {
+    /// Along `force`, with `b_x` in front.
+    #[inline(always)]
+    fn new(force: Vec3<T, World>, heading: &Heading<T>) -> Self {
+        let y_c = Vec3::new(-heading.sin, heading.cos, T::zero());
+        Self { force, side: y_c.cross(force), length_squared: force.norm_squared() }
+    }
+
+    /// Upwards where there is no force; with `b_x` on the side of `last`, and along it near the singular
+    /// direction.
+    #[cold]
+    #[inline(never)]
+    fn beside(force: Vec3<T, World>, heading: &Heading<T>, last: Vec3<T, World>) -> Self {
+        let none = force.norm_squared().lt(T::lit(1e-12));
+        let force = Vec3::select(none, Vec3::up(T::one()), force);
+        let Self { side, length_squared, .. } = Self::new(force, heading);
+        // Closer than 0.06 deg to the singular direction the last axis is held, made normal to b_z.
+        let singular = side.norm_squared().lt(T::lit(1e-6) * length_squared);
+        let held = last * length_squared - force * last.dot(force);
+        let side = Vec3::select(singular, held, side * T::one().with_sign(side.dot(last)));
+        Self { force, side, length_squared }
+    }
+
+    /// All three axes times the last number.
+    #[inline(always)]
+    fn axes(&self) -> (Vec3<T, World>, Vec3<T, World>, Vec3<T, World>, T) {
+        let Self { force, side, length_squared } = *self;
+        // b_x = side/|side| and b_z = force/|force|: all three axes times |side| |force| instead, so that
+        // the only division is the one that makes the quaternion a unit.
+        let (width, length) = (side.norm(), length_squared.sqrt());
+        (side * length, force.cross(side), force * width, width * length)
+    }
+
+    /// The attitude, however it lies.
+    #[cold]
+    #[inline(never)]
+    fn attitude(&self) -> Rotation<T, Body, World> {
+        let (x, y, z, one) = self.axes();
+        Rotation::from_scaled_axes(x, y, z, one)
+    }
+}
+
 /// [`attitude_along`] beside the previous `b_x`: near the singular direction `b_z || y_c` that is kept,
 /// and passing through it, its side.
 #[inline(always)]
@@ -67,17 +122,28 @@ fn attitude_beside<T: Real>(
     heading: &Heading<T>,
     last: Vec3<T, World>,
 ) -> Rotation<T, Body, World> {
-    let y_c = Vec3::new(-heading.sin, heading.cos, T::zero());
-    let none = force.norm_squared().lt(T::lit(1e-12));
-    let force = Vec3::select(none, Vec3::up(T::one()), force);
-    let length_squared = force.norm_squared();
-    let side = y_c.cross(force);
-    // Closer than 0.06 deg to the singular direction the last axis is held, made normal to b_z.
-    let singular = side.norm_squared().lt(T::lit(1e-6) * length_squared);
-    let held = last * length_squared - force * last.dot(force);
-    let side = Vec3::select(singular, held, side * T::one().with_sign(side.dot(last)));
-    // b_x = side/|side| and b_z = force/|force|: all three axes times |side| |force| instead, so that
-    // the only division is the one that makes the quaternion a unit.
-    let (width, length) = (side.norm(), length_squared.sqrt());
-    Rotation::from_scaled_axes(side * length, force.cross(side), force * width, width * length)
+    let mut pointing = Pointing::<T>::default();
+    let (mut width_squared, mut ahead) = (T::zero(), T::zero());
+    for i in 0..T::LANES {
+        let one = Pointing::new(force.pick(i), &heading.pick(i));
+        width_squared.set_lane(i, one.side.norm_squared());
+        ahead.set_lane(i, one.side.dot(last.pick(i)));
+        one.put(&mut pointing, i);
+    }
+    let none = pointing.length_squared.lt(T::lit(1e-12));
+    let singular = width_squared.lt(T::lit(1e-6) * pointing.length_squared);
+    // The usual case: the rare one would give the same bits.
+    if !(!(none | singular | ahead.lt(T::zero()))).all() {
+        pointing = Pointing::beside(same(&force), &same(heading), same(&last));
+    }
+
+    let (mut attitude, mut upright) = (Rotation::default(), T::zero());
+    for i in 0..T::LANES {
+        let (x, y, z, one) = pointing.pick(i).axes();
+        let (rotation, w4) = Rotation::from_upright_axes(x, y, z, one);
+        upright.set_lane(i, w4 - T::Scalar::lit(2.25) * one);
+        rotation.put(&mut attitude, i);
+    }
+    // The same once more: four w^2 above half of the sum of all four is the largest.
+    if T::zero().lt(upright).all() { attitude } else { same(&same(&pointing).attitude()) }
 }

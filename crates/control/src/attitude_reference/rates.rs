@@ -50,6 +50,12 @@ impl<T: Real> RateMemory<T> {
         self.clock.tune(dt);
     }
 
+    /// Reciprocal of the time between two references, 1/s.
+    #[inline(always)]
+    pub fn per_step(&self) -> T {
+        self.clock.per_step
+    }
+
     /// Angular velocity and acceleration of the reference in its own axes.
     #[inline(always)]
     pub fn update(

@@ -11,9 +11,9 @@
 //! Source: Z-Y-X heading as in Faessler, Franchi and Scaramuzza, RA-L 2018; thrust projection after
 //! Lee, Leok and McClamroch, CDC 2010.
 
-use super::{Heading, RateMemory, Rates, attitude_beside, heading, projected_thrust};
+use super::{RateMemory, Rates, attitude_beside, heading, projected_thrust};
 use crate::controller::Controller;
-use crate::math::{Body, Rotation, Vec3, World};
+use crate::math::{Vec3, World};
 use crate::real::Real;
 use crate::record::RecordExt as _;
 use crate::signals::{Attitude, Measurement, Model, Thrust};
@@ -58,15 +58,6 @@ impl<T: Real> RotationMatrix<T> {
     pub fn new(gains: Gains<T>, options: Options, model: &Model<T>) -> Self {
         Self { gains, options, model: *model, ..Self::default() }
     }
-
-    #[inline(always)]
-    fn rotation(&mut self, force: Vec3<T, World>, heading: &Heading<T>) -> Rotation<T, Body, World> {
-        let ahead = Vec3::new(heading.cos, heading.sin, T::zero());
-        let last = Vec3::select(T::zero().lt(self.memory.started), self.forward, ahead);
-        let rotation = attitude_beside(force, heading, last); // (1-3)
-        self.forward = rotation.x_axis();
-        rotation
-    }
 }
 
 impl<T: Real> Controller<T> for RotationMatrix<T> {
@@ -81,17 +72,24 @@ impl<T: Real> Controller<T> for RotationMatrix<T> {
     #[inline(always)]
     fn update(&mut self, measurement: &Measurement<T>, thrust: &Thrust<T>, _: T) -> Attitude<T> {
         let heading = heading(thrust.yaw);
-        let mut attitude = Attitude::<T>::default();
+        let ahead = Vec3::new(heading.cos, heading.sin, T::zero());
+        let last = Vec3::select(T::zero().lt(self.memory.started), self.forward, ahead);
+        let rotation = attitude_beside(thrust.force, &heading, last); // (1-3)
+        let mut attitude = Attitude { rotation, ..Attitude::default() };
         for i in 0..T::LANES {
-            let (mut law, thrust) = (self.pick(i), thrust.pick(i));
-            law.rotation(thrust.force, &heading.pick(i)).put(&mut attitude.rotation, i);
-            law.forward.put(&mut self.forward, i);
-            let thrust = projected_thrust(&thrust, &measurement.pick(i), &law.model); // (4)
+            rotation.pick(i).x_axis().put(&mut self.forward, i);
+            let thrust =
+                projected_thrust(&thrust.pick(i), &measurement.pick(i), &self.model.pick(i)); // (4)
             attitude.thrust.set_lane(i, thrust);
         }
-        let rotation = &attitude.rotation;
-        let (rate, acceleration) = self.memory.update(self.options.rates, rotation, thrust);
+        let (rate, acceleration) = self.memory.update(self.options.rates, &rotation, thrust);
         Attitude { rate, acceleration, ..attitude }
+    }
+
+    #[inline(always)]
+    fn hidden(&self) -> T {
+        // The forward axis and the previous reference are those of the command.
+        self.memory.per_step()
     }
 
     fn reset(&mut self, _: &Measurement<T>) {

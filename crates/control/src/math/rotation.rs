@@ -116,6 +116,16 @@ impl<T: Real, A: Frame, B: Frame> Rotation<T, A, B> {
             T::one() - two * (self.x.sq() + self.y.sq()),
         )
     }
+    /// `length` along the third axis of `A` in coordinates of `B`: R (length `e_z`).
+    #[inline(always)]
+    pub fn up(self, length: T) -> Vec3<T, B> {
+        let twice = length + length;
+        Vec3::new(
+            (self.x * self.z + self.w * self.y) * twice,
+            (self.y * self.z - self.w * self.x) * twice,
+            length - (self.x.sq() + self.y.sq()) * twice,
+        )
+    }
     /// The first axis of `A` in coordinates of `B`: R `e_x`.
     #[inline(always)]
     pub fn x_axis(self) -> Vec3<T, B> {
@@ -142,6 +152,15 @@ impl<T: Real, A: Frame, B: Frame> Rotation<T, A, B> {
     #[inline(always)]
     pub fn from_axes(x: Vec3<T, B>, y: Vec3<T, B>, z: Vec3<T, B>) -> Self {
         Self::from_scaled_axes(x, y, z, T::one())
+    }
+    /// [`Rotation::from_scaled_axes`] by its scalar part w alone, and 4 w^2 times `one`: good where that is
+    /// well above zero, and of the same bits where no other component is larger.
+    #[inline(always)]
+    pub fn from_upright_axes(x: Vec3<T, B>, y: Vec3<T, B>, z: Vec3<T, B>, one: T) -> (Self, T) {
+        let w4 = one + x.x + y.y + z.z;
+        let k = T::lit(0.5) / (w4 * one).sqrt();
+        let (wx, wy, wz) = (y.z - z.y, z.x - x.z, x.y - y.x);
+        (Self::from_quaternion(w4 * k, wx * k, wy * k, wz * k), w4)
     }
     /// [`Rotation::from_axes`] for axes that all have the length `one`.
     #[inline(always)]

@@ -105,6 +105,13 @@ impl<T: Real> Hosm<T> {
         observer
     }
 
+    /// Sum of all that is estimated. The measured position is as good as the measurement.
+    #[inline(always)]
+    fn estimates(&self) -> T {
+        let Vec3 { x, y, z, .. } = self.z0 + self.z1 + self.z2;
+        x + y + z
+    }
+
     /// What (1) to (3) need of the gains.
     fn prepare(&mut self) {
         let Gains { lipschitz, lambda0, lambda1, lambda2, .. } = self.gains;
@@ -123,6 +130,19 @@ impl<T: Real> Observer<T> for Hosm<T> {
     #[inline(always)]
     fn correct(&mut self, measurement: &Measurement<T>, _: T) {
         self.x = measurement.position;
+    }
+
+    #[inline(always)]
+    fn correct_summed(&mut self, measurement: &Measurement<T>, dt: T) -> T {
+        self.correct(measurement, dt);
+        self.estimates() + (self.gain0 + self.gain1 + self.gain2)
+    }
+
+    #[inline(always)]
+    fn advance_summed(&mut self, applied: &Applied<T>, dt: T) -> T {
+        self.advance(applied, dt);
+        // A lost gain shows in what it moves.
+        self.estimates()
     }
 
     #[inline(always)]

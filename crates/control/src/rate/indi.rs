@@ -20,6 +20,7 @@ use crate::controller::Controller;
 use crate::filter::{Butterworth, Clock};
 use crate::math::{Body, Vec3};
 use crate::real::Real;
+use crate::record::Record as _;
 use crate::signals::{Measurement, Model, Rate, Wrench};
 use crate::{choice, options, record};
 
@@ -111,6 +112,15 @@ impl<T: Real> Controller<T> for Indi<T> {
         Wrench {
             thrust: reference.thrust,
             torque: tau + (nu - omega_dot).scale(self.model.inertia), // (2)
+        }
+    }
+
+    #[inline(always)]
+    fn hidden(&self) -> T {
+        match self.options.filter {
+            Filter::Absent => self.sum(|x| x),
+            // The coefficients and the clock are in the command or in what the filters keep.
+            Filter::Butterworth => self.omega_dot.kept() + self.torque.kept(),
         }
     }
 

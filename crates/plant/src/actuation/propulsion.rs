@@ -309,7 +309,7 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
     }
     #[inline(always)]
     fn thrust_per_mass(&self, state: &State<T>, _: &Vehicle<T>) -> Vec3<T, World> {
-        state.attitude.z_axis() * (self.thrust(state) * self.per_mass)
+        state.attitude.up(self.thrust(state) * self.per_mass)
     }
     #[inline(always)]
     fn torque(&self, state: &State<T>) -> Vec3<T, Body> {

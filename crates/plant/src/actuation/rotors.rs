@@ -117,7 +117,7 @@ impl<T: Real> Actuate<T> for Rotors<T> {
     }
     #[inline(always)]
     fn thrust_per_mass(&self, state: &State<T>, _: &Vehicle<T>) -> Vec3<T, World> {
-        state.attitude.z_axis() * (sum(squares(state)) * self.thrust_per_mass)
+        state.attitude.up(sum(squares(state)) * self.thrust_per_mass)
     }
     #[inline(always)]
     fn torque(&self, state: &State<T>) -> Vec3<T, Body> {

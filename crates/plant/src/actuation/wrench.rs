@@ -51,7 +51,7 @@ impl<T: Real> Actuate<T> for IdealWrench<T> {
     }
     #[inline(always)]
     fn thrust_per_mass(&self, state: &State<T>, _: &Vehicle<T>) -> Vec3<T, World> {
-        state.attitude.z_axis() * (self.wrench.thrust * self.per_mass) // (1)
+        state.attitude.up(self.wrench.thrust * self.per_mass) // (1)
     }
     #[inline(always)]
     fn torque(&self, _: &State<T>) -> Vec3<T, Body> {
