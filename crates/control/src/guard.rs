@@ -228,6 +228,12 @@ impl<T: Real> Good<T> {
         Self { lanes, all: lanes.all() }
     }
 
+    /// Good in every lane: for what is finite by the way it was made, so that none need ask.
+    #[inline(always)]
+    pub fn everywhere() -> Self {
+        Self { lanes: T::Mask::splat(true), all: true }
+    }
+
     /// Where both are good.
     #[inline(always)]
     pub fn and(self, other: Self) -> Self {

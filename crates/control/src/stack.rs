@@ -2,7 +2,7 @@
 
 use crate::attitude::AttitudeLaw;
 use crate::attitude_reference::AttitudeReference;
-use crate::guard::{Guarded, GuardedObserver, finite, passing};
+use crate::guard::{Good, Guarded, GuardedObserver, finite, passing};
 use crate::math::{Vec3, World};
 use crate::observer::Observer;
 use crate::position::Position;
@@ -155,14 +155,26 @@ impl<T: Real> Stack<T> {
         trajectory: &Trajectory<T>,
         dt: T,
     ) -> (Vec3<T, World>, Wrench<T>) {
+        let input = passing(measurement, dt);
+        self.act_checked([input, input.and(finite(trajectory))], measurement, trajectory, dt)
+    }
+
+    /// [`Stack::act`] where the caller knows already in which lanes the measurement, and measurement and
+    /// trajectory, are good.
+    #[inline(always)]
+    pub fn act_checked(
+        &mut self,
+        [input, both]: [Good<T>; 2],
+        measurement: &Measurement<T>,
+        trajectory: &Trajectory<T>,
+        dt: T,
+    ) -> (Vec3<T, World>, Wrench<T>) {
         let Rhythm { position: slow, attitude: middle, rate: fast } = self.every;
         let longer = |every: u32| if every == 1 { dt } else { dt * T::lit(f64::from(every)) };
-        let input = passing(measurement, dt);
         if self.due(slow) {
             let dt = longer(slow);
             self.observer.correct_checked(input, measurement, dt);
-            let position = input.and(finite(trajectory));
-            self.position.update_checked(position, measurement, trajectory, dt);
+            self.position.update_checked(both, measurement, trajectory, dt);
         }
         let thrust = self.thrust();
         if self.exit == Exit::Thrust {

@@ -2,6 +2,7 @@
 
 mod surroundings;
 
+use stormpetrel_control::guard::{Good, passing};
 use stormpetrel_control::math::{Body, Rotation, Vec3, World};
 use stormpetrel_control::real::{Mask, Real};
 use stormpetrel_control::record;
@@ -317,12 +318,20 @@ impl<T: Real> Flight<T> {
     #[inline(always)]
     fn command(&mut self, told: &Measurement<T>, reference: &Trajectory<T>) -> Sent<T> {
         let before = if self.timing.drops { Some(self.stack) } else { None };
-        let (force, wrench) = self.stack.act(told, reference, self.control_step);
+        let (dt, input) = (self.control_step, self.known(told));
+        let (force, wrench) = self.stack.act_checked([input, input], told, reference, dt);
         let mut sent = Sent { force, wrench };
         if self.timing.late {
             sent = same(&self.late(before));
         }
         sent
+    }
+
+    /// Where the laws' input is good: a reference is finite at any time, and so is the state of a vehicle
+    /// that flies. What a filter makes of sensors may not be.
+    #[inline(always)]
+    fn known(&self, told: &Measurement<T>) -> Good<T> {
+        if self.sensing.estimate { passing(told, self.control_step) } else { Good::everywhere() }
     }
 
     /// What every level asked for at this tick, and what of it was `sent`. Only who looks on needs all of
