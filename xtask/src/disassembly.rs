@@ -17,7 +17,7 @@ const WIDTHS: [(&str, [&str; 2], &str); 3] = [
 ];
 
 /// What the loop may call: names of C in full, of Rust in part.
-const ALLOWED: [&str; 11] = [
+const ALLOWED: [&str; 12] = [
     // Copies of whole records.
     "memcpy",
     "memmove",
@@ -27,6 +27,8 @@ const ALLOWED: [&str; 11] = [
     "::mend",
     "::restart",
     "Record::finite",
+    // Only where a reference lies on its side or upside down, or has no direction.
+    "attitude_reference::Pointing<T>::",
     // Only where the loop is left by a panic.
     "_Unwind_Resume",
     "core::panicking::panic_in_cleanup",

@@ -95,21 +95,21 @@ impl<T: Real> Pointing<T> {
         Self { force, side, length_squared }
     }
 
-    /// All three axes times the last number.
+    /// The three axes times a number, and the number.
     #[inline(always)]
-    fn axes(&self) -> (Vec3<T, World>, Vec3<T, World>, Vec3<T, World>, T) {
+    fn axes(&self) -> ([Vec3<T, World>; 3], T) {
         let Self { force, side, length_squared } = *self;
         // b_x = side/|side| and b_z = force/|force|: all three axes times |side| |force| instead, so that
         // the only division is the one that makes the quaternion a unit.
         let (width, length) = (side.norm(), length_squared.sqrt());
-        (side * length, force.cross(side), force * width, width * length)
+        ([side * length, force.cross(side), force * width], width * length)
     }
 
     /// The attitude, however it lies.
     #[cold]
     #[inline(never)]
     fn attitude(&self) -> Rotation<T, Body, World> {
-        let (x, y, z, one) = self.axes();
+        let ([x, y, z], one) = self.axes();
         Rotation::from_scaled_axes(x, y, z, one)
     }
 }
@@ -139,7 +139,7 @@ fn attitude_beside<T: Real>(
 
     let (mut attitude, mut upright) = (Rotation::default(), T::zero());
     for i in 0..T::LANES {
-        let (x, y, z, one) = pointing.pick(i).axes();
+        let ([x, y, z], one) = pointing.pick(i).axes();
         let (rotation, w4) = Rotation::from_upright_axes(x, y, z, one);
         upright.set_lane(i, w4 - T::Scalar::lit(2.25) * one);
         rotation.put(&mut attitude, i);
