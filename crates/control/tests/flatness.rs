@@ -153,6 +153,28 @@ fn the_reference_turns_steadily_through_inversion() {
     }
 }
 
+/// Closer than 0.06 deg to the lateral axis of the heading the forward axis stays as it was, made normal to
+/// the force; beside that it follows the heading.
+#[test]
+fn near_the_lateral_axis_the_forward_axis_is_held() {
+    for (beside, held) in [(0.9e-3, true), (1.1e-3, false)] {
+        let mut law = law(None);
+        let mut reference = |force: Vec3<f64, World>| {
+            let thrust = Thrust { force: force * 9.8, ..Thrust::default() };
+            law.update(&Measurement::default(), &thrust, 1e-3).rotation
+        };
+        let before: Vec3<f64, World> = reference(Vec3::up(1.0)).x_axis();
+        // y_c is the second axis, so that y_c x F shows half to the first and half down.
+        let part = beside * std::f64::consts::FRAC_1_SQRT_2;
+        let force = Vec3::new(part, (1.0 - beside * beside).sqrt(), part);
+        let kept = (before - force * before.dot(force)).unit();
+        let follows = Vec3::new(force.z, 0.0, -force.x).unit();
+        let forward: Vec3<f64, World> = reference(force).x_axis();
+        let expected = if held { kept } else { follows };
+        assert!((forward - expected).norm() < 1e-12, "{beside}: {forward:?}, {expected:?}");
+    }
+}
+
 /// Specific force of a vehicle that has reached the law's reference: (T/m) R e_z.
 fn produced(pitch: Option<euler::Pitch>, force: Vec3<f64, World>) -> Vec3<f64, World> {
     let (mut law, thrust) = (law(pitch), Thrust { force, ..Thrust::default() });
