@@ -8,8 +8,9 @@
 //! a_T is the rotors' thrust per mass. In principal axes (4) is one line for each, the others in turn:
 //!   I_x omega_x' = (I_y - I_z) omega_y omega_z + tau_x + d_tau_x         (5)
 //! The quaternion replaces the article's Euler angles, which are singular at 90 deg of pitch; the force
-//! disturbance enters divided by the mass, which the article forgets. Classical Runge-Kutta of order 4; the quaternion is normalised after every step. The rotors
-//! follow their commands whatever the body does, so their speeds at the three stages are exact.
+//! disturbance enters divided by the mass, which the article forgets. Classical Runge-Kutta of order 4;
+//! the quaternion is normalised after every step. The rotors follow their commands whatever the body
+//! does, so their speeds at the three stages are exact.
 
 use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::Real;
