@@ -80,7 +80,7 @@ fn the_literal_reading_is_sensitive_and_the_consistent_one_is_not() {
     let mut consistent = find("article/consistent:rate-commanded");
     if cfg!(debug_assertions) {
         // Chaos takes a few seconds of flight to grow from 1e-9 m to a per cent.
-        literal.run.duration = 8.0;
+        literal.run.duration = 12.0;
         consistent.run.duration = 2.0;
     }
     let range = spread(&literal).expect("chaos").range("position.iae").expect("an IAE");
