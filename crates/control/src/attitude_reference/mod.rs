@@ -144,6 +144,6 @@ fn attitude_beside<T: Real>(
         upright.set_lane(i, w4 - T::Scalar::lit(2.25) * one);
         rotation.put(&mut attitude, i);
     }
-    // The same once more: four w^2 above half of the sum of all four is the largest.
+    // Again the usual case: 4 w^2 above half of the sum of all four is the largest of them.
     if T::zero().lt(upright).all() { attitude } else { same(&same(&pointing).attitude()) }
 }
