@@ -63,7 +63,7 @@ impl<T: Real> Wish<T> {
     /// All of it.
     #[inline(always)]
     fn thrusts(&self) -> [T; 4] {
-        from_index(|i| self.lift[i] + self.tilt[i] + self.yaw[i])
+        from_index(|i| (self.lift[i] + self.yaw[i]) + self.tilt[i])
     }
 }
 

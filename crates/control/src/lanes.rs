@@ -229,6 +229,14 @@ impl<T: Real<Mask = bool, Scalar = T>, const N: usize> Real for Lanes<T, N> {
         out
     }
     #[inline(always)]
+    fn after_quarters(sine: Self, cosine: Self, n: Self) -> (Self, Self) {
+        let (mut s, mut c) = (sine, cosine);
+        for i in 0..N {
+            (s.0[i], c.0[i]) = T::after_quarters(sine.0[i], cosine.0[i], n.0[i]);
+        }
+        (s, c)
+    }
+    #[inline(always)]
     fn split_exponent(self) -> (Self, Self) {
         let (mut m, mut e) = (self, self);
         for i in 0..N {
@@ -268,8 +276,12 @@ impl<T: Real<Mask = bool, Scalar = T>, const N: usize> Real for Lanes<T, N> {
         self.each(T::cbrt)
     }
     #[inline(always)]
-    fn two_thirds_power(self) -> Self {
-        self.each(T::two_thirds_power)
+    fn thirds(self) -> [Self; 2] {
+        let (mut one, mut two) = (self, self);
+        for i in 0..N {
+            [one.0[i], two.0[i]] = self.0[i].thirds();
+        }
+        [one, two]
     }
     #[inline(always)]
     fn atan2(mut self, x: Self) -> Self {

@@ -108,6 +108,9 @@ pub trait Real:
     fn is_finite(self) -> Self::Mask;
     /// `a` where the mask says yes, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
+    /// Sine and cosine of an angle from those of what is left of it after `n` quarter turns; `n` comes with
+    /// [`Precision::ROUND`] added, so that it stands in the lowest bits.
+    fn after_quarters(sine: Self, cosine: Self, n: Self) -> (Self, Self);
     /// Splits a positive normal number into `(m, e)` with `m * 2^e` and `1 <= m < 2`.
     fn split_exponent(self) -> (Self, Self);
     /// `2^self` for an integer value in the range of normal exponents.
@@ -129,6 +132,12 @@ pub trait Real:
     #[inline(always)]
     fn sq(self) -> Self {
         self * self
+    }
+    /// The number over the square root of `x`, which must be normal and positive: root and division side by
+    /// side, so that neither waits for the other.
+    #[inline(always)]
+    fn over_root(self, x: Self) -> Self {
+        x.sqrt() * (self / x)
     }
     /// Half of the number.
     #[inline(always)]
@@ -202,10 +211,10 @@ pub trait Real:
     fn cbrt(self) -> Self {
         special::cbrt(self)
     }
-    /// `|self|^(2/3)` with the sign of `self`.
+    /// `|self|^(1/3)` and `|self|^(2/3)`, both with the sign of `self`.
     #[inline(always)]
-    fn two_thirds_power(self) -> Self {
-        special::two_thirds_power(self)
+    fn thirds(self) -> [Self; 2] {
+        special::thirds(self)
     }
 }
 
@@ -304,6 +313,15 @@ macro_rules! float {
             #[inline(always)]
             fn select(mask: bool, a: Self, b: Self) -> Self {
                 if mask { a } else { b }
+            }
+            #[inline(always)]
+            fn after_quarters(sine: Self, cosine: Self, n: Self) -> (Self, Self) {
+                // An odd n swaps the two. The sine's sign is the second bit of n, the cosine's that of n + 1.
+                let n = n.to_bits();
+                let (s, c) = if n & 1 == 0 { (sine, cosine) } else { (cosine, sine) };
+                let sign = |n: $bits| (n >> 1) << ($bits::BITS - 1);
+                let (s, c) = (s.to_bits() ^ sign(n), c.to_bits() ^ sign(n + 1));
+                (<$float>::from_bits(s), <$float>::from_bits(c))
             }
             #[inline(always)]
             fn split_exponent(self) -> (Self, Self) {

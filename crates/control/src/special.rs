@@ -92,12 +92,19 @@ fn is_single<T: Real>() -> bool {
     T::Precision::ROUND < 1e9
 }
 
-/// Polynomial of `x` with the coefficients of the precision.
+/// Polynomial of `x` with the coefficients of the precision: Horner's scheme in the square of `x`, with a
+/// pair of coefficients at each step, so that fewer operations wait for the one before.
 #[inline(always)]
 fn polynomial<T: Real>(x: T, [double, single]: Series) -> T {
     let coefficients = if is_single::<T>() { single } else { double };
-    let (last, others) = coefficients.split_last().unwrap_or((&0.0, &[]));
-    others.iter().rev().fold(T::lit(*last), |sum, c| sum * x + T::lit(*c))
+    let (pairs, last) = coefficients.as_chunks::<2>();
+    let square = x * x;
+    let highest = last.first().map(|c| T::lit(*c));
+    let sum = pairs.iter().rev().fold(highest, |sum, [even, odd]| {
+        let pair = T::lit(*even) + T::lit(*odd) * x;
+        Some(sum.map_or(pair, |sum| sum * square + pair))
+    });
+    sum.unwrap_or(T::zero())
 }
 
 /// `a - b` rounded and what the rounding lost; exact if `|a| >= |b|` or the difference is exact.
@@ -149,11 +156,13 @@ pub fn floor<T: Real>(x: T) -> T {
 pub fn sin_cos<T: Real>(x: T) -> (T, T) {
     let inside = x.abs().le(T::lit(T::Precision::ANGLE_LIMIT));
     let x = T::select(inside, x, T::zero());
-    let n = (x * T::lit(FRAC_2_PI)).round();
+    // Adding ROUND leaves the number of quarter turns in the lowest bits.
+    let quarters = x * T::lit(FRAC_2_PI) + T::lit(T::Precision::ROUND);
+    let n = quarters - T::lit(T::Precision::ROUND);
     let [p, q, r, s] = crate::record::each(T::Precision::HALF_PI, |part| n * T::lit(part));
     let (rest, lost_q) = less(x - p, q);
-    let (rest, lost_r) = less(rest, r);
-    let (hi, lo) = less(rest, s - (lost_q + lost_r));
+    let (hi, lost_r) = less(rest, r);
+    let lo = (lost_q + lost_r) - s;
 
     let z = hi * hi;
     let sine = polynomial(z, SINE);
@@ -161,17 +170,7 @@ pub fn sin_cos<T: Real>(x: T) -> (T, T) {
     let cosine = polynomial(z, COSINE);
     let (main, lost) = less(T::one(), z.half());
     let cosine = main + (lost + (z * z * cosine - hi * lo));
-
-    // The quadrant as one of -2, -1, 0, 1, 2; both twos mean the same.
-    let quadrant = n - (n * T::lit(0.25)).round() * T::lit(4.0);
-    let odd = quadrant.abs().eq(T::one());
-    let opposite = quadrant.abs().eq(T::lit(2.0));
-    let sin = T::select(odd, cosine, sine);
-    let cos = T::select(odd, sine, cosine);
-    (
-        T::select(quadrant.eq(-T::one()) | opposite, -sin, sin),
-        T::select(quadrant.eq(T::one()) | opposite, -cos, cos),
-    )
+    T::after_quarters(sine, cosine, quarters)
 }
 
 /// Arc sine in rad, in -pi/2..=pi/2.
@@ -297,25 +296,32 @@ pub fn cbrt<T: Real>(x: T) -> T {
     T::select(x.eq(T::zero()), x, root)
 }
 
-/// `|x|^(2/3)` with the sign of `x`.
+/// `|x|^(1/3)` and `|x|^(2/3)`, both with the sign of `x`.
 ///
-/// Error at most 2 ulp for normal numbers; for smaller ones, and for NaN, the result is zero. An
+/// Error at most 4.5 and 2.5 ulp for normal numbers; for smaller ones, and for NaN, both are zero. An
 /// infinity counts as the largest finite number. Exactly odd, but a zero comes out positive.
 #[inline(always)]
-pub fn two_thirds_power<T: Real>(x: T) -> T {
+pub fn thirds<T: Real>(x: T) -> [T; 2] {
     let a = x.abs().min(largest());
     // y = a^(-1/3), improved twice by (1 - h)^(-1/3): 4 % become 2e-5 and then less than rounding.
     let mut y = a.inverse_cbrt_guess();
     for _ in 0..2 {
-        y += y * cube_root_correction(T::one() - (a * y) * (y * y));
+        let h = T::one() - (a * y) * (y * y);
+        // The series of `cube_root_correction` times y, y taken into each term before they are known.
+        y = (y + y * (h * T::lit(CORRECTION[0])))
+            + (y * (h * h)) * (T::lit(CORRECTION[1]) + h * T::lit(CORRECTION[2]));
     }
-    let power = T::select(T::lit(T::Precision::TINY).le(x.abs()), a * y, T::zero());
-    power.with_sign(x)
+    let normal = T::lit(T::Precision::TINY).le(a);
+    let two = T::select(normal, a * y, T::zero()).with_sign(x);
+    [two * y, two]
 }
+
+/// Coefficients of `(1 - h)^(-1/3) - 1`.
+const CORRECTION: [f64; 3] = [1.0 / 3.0, 2.0 / 9.0, 14.0 / 81.0];
 
 /// `(1 - h)^(-1/3) - 1` for small `h`, to its third order; in pairs, so that little waits for what is before.
 #[inline(always)]
 fn cube_root_correction<T: Real>(h: T) -> T {
     let square = h * h;
-    h * T::lit(1.0 / 3.0) + square * (T::lit(2.0 / 9.0) + h * T::lit(14.0 / 81.0))
+    h * T::lit(CORRECTION[0]) + square * (T::lit(CORRECTION[1]) + h * T::lit(CORRECTION[2]))
 }

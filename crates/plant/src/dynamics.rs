@@ -6,7 +6,7 @@
 //!   I omega' = -omega x I omega + tau + d_tau                            (4)
 //!
 //! a_T is the rotors' thrust per mass. In principal axes (4) is one line for each, the others in turn:
-//!   I_x omega_x' = (I_y - I_z) omega_y omega_z + tau_x + d_tau_x         (5)
+//!   omega_x' = (I_y - I_z)/I_x omega_y omega_z + (tau_x + d_tau_x)/I_x   (5)
 //! The quaternion replaces the article's Euler angles, which are singular at 90 deg of pitch; the force
 //! disturbance enters divided by the mass, which the article forgets. Classical Runge-Kutta of order 4;
 //! the quaternion is normalised after every step. The rotors follow their commands whatever the body
@@ -47,13 +47,18 @@ record! {
         mass: T [1/kg];
         /// Of the moments of inertia.
         inertia: Vec3<T, Body> [1/(kg m^2)];
+        /// Difference of the two other moments of inertia over the own one.
+        coupling: Vec3<T, Body> [1];
     }
 }
 
 impl<T: Real> Reciprocals<T> {
     /// Of this vehicle.
     pub fn new(vehicle: &Vehicle<T>) -> Self {
-        Self { mass: T::one() / vehicle.mass, inertia: vehicle.inertia.map(|i| T::one() / i) }
+        let i = vehicle.inertia;
+        let inertia = i.map(|i| T::one() / i);
+        let coupling = Vec3::new(i.y - i.z, i.z - i.x, i.x - i.y).scale(inertia);
+        Self { mass: T::one() / vehicle.mass, inertia, coupling }
     }
 }
 
@@ -75,6 +80,8 @@ record! {
         torque: Vec3<T, Body> [N m];
         /// Reciprocal moments of inertia.
         per_inertia: Vec3<T, Body> [1/(kg m^2)];
+        /// Difference of the two other moments of inertia over the own one.
+        coupling: Vec3<T, Body> [1];
     }
 }
 
@@ -82,7 +89,12 @@ impl<T: Real> Held<T> {
     /// For this vehicle and push.
     #[inline(always)]
     pub fn new(per: &Reciprocals<T>, push: &Push<T>) -> Self {
-        Held { push_per_mass: push.force * per.mass, torque: push.torque, per_inertia: per.inertia }
+        Held {
+            push_per_mass: push.force * per.mass,
+            torque: push.torque,
+            per_inertia: per.inertia,
+            coupling: per.coupling,
+        }
     }
 }
 
@@ -100,7 +112,7 @@ pub fn derivative<T: Real>(
         position: state.velocity,                                            // (1)
         velocity: acceleration(thrust, held.push_per_mass, vehicle.gravity), // (2)
         attitude: spin(state),                                               // (3)
-        rate: angular_acceleration(state, vehicle, held, torque),            // (5)
+        rate: angular_acceleration(state, held, torque),                     // (5)
     }
 }
 
@@ -120,14 +132,12 @@ pub fn spin<T: Real>(state: &State<T>) -> [T; 4] {
 #[inline(always)]
 pub fn angular_acceleration<T: Real>(
     state: &State<T>,
-    vehicle: &Vehicle<T>,
     held: &Held<T>,
     torque: Vec3<T, Body>,
 ) -> Vec3<T, Body> {
-    let (w, i) = (state.rate, vehicle.inertia);
+    let w = state.rate;
     let products = Vec3::new(w.y * w.z, w.z * w.x, w.x * w.y);
-    let gyroscopic = products.scale(Vec3::new(i.y - i.z, i.z - i.x, i.x - i.y));
-    (torque + gyroscopic).scale(held.per_inertia)
+    products.scale(held.coupling) + torque.scale(held.per_inertia)
 }
 
 /// One Runge-Kutta step of `h` seconds; `actuation` has let them pass.
@@ -159,7 +169,10 @@ pub fn along_mean<T: Real>(
     let k2 = slope(&state.along(&k1, h.half(), half_way));
     let k3 = slope(&state.along(&k2, h.half(), half_way));
     let k4 = slope(&state.along(&k3, h, end));
-    let two = T::lit(2.0);
-    let mean = record::Record::zip([&k1, &k2, &k3, &k4], &mut |[a, b, c, d]| a + (b + c) * two + d);
-    state.along(&mean, h * T::lit(1.0 / 6.0), end)
+    let (two, six) = (T::lit(2.0), T::lit(6.0));
+    let mut sum: Derivative<T> =
+        record::Record::zip([&k1, &k2, &k3, &k4], &mut |[a, b, c, d]| (a + d) + (b + c) * two);
+    // The velocities of the four stages are state.velocity and what the slopes before added to it.
+    sum.position = state.velocity * six + (k1.velocity + k2.velocity + k3.velocity) * h;
+    state.along(&sum, h * T::lit(1.0 / 6.0), end)
 }

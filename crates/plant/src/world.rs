@@ -231,7 +231,7 @@ fn newton_euler<T: Real>(
         position: state.velocity,
         velocity: a + air.force * conditions.per_mass, // (1)
         attitude: spin(state),
-        rate: angular_acceleration(state, vehicle, held, torque), // (2)
+        rate: angular_acceleration(state, held, torque), // (2)
     }
 }
 

@@ -52,13 +52,14 @@ impl<T: Real> TiltPriority<T> {
 #[inline(always)]
 fn error<T: Real>(q_e: Rotation<T, Body, Body>) -> Vec3<T, Body> {
     let Rotation { w, x, y, z, .. } = q_e;
-    let n = (w.sq() + z.sq()).sqrt();
-    let upside_down = n.lt(T::lit(1e-9));
-    let per_n = T::one() / T::select(upside_down, T::one(), n);
-    let x_t = T::select(upside_down, T::one(), (w * x - y * z) * per_n); // (2)
-    let y_t = T::select(upside_down, T::zero(), (w * y + x * z) * per_n);
-    let z_y = z * per_n * T::one().with_sign(w); // (3)
-    Vec3::new(x_t, y_t, z_y) * T::lit(-2.0)
+    let (two, n_squared) = (T::lit(-2.0), w.sq() + z.sq());
+    let upside_down = n_squared.lt(T::lit(1e-18));
+    let k = two.over_root(T::select(upside_down, T::one(), n_squared)); // -2/N
+    Vec3::new(
+        T::select(upside_down, two, (w * x - y * z) * k), // (2)
+        T::select(upside_down, T::zero(), (w * y + x * z) * k),
+        (z * T::one().with_sign(w)) * k, // (3)
+    )
 }
 
 impl<T: Real> Controller<T> for TiltPriority<T> {

@@ -57,7 +57,7 @@ record! {
 /// world's lateral heading axis `y_c` = (-sin yaw, cos yaw, 0).
 pub fn attitude_along<T: Real>(force: Vec3<T, World>, yaw: T) -> Rotation<T, Body, World> {
     let (sin, cos) = yaw.sin_cos();
-    attitude_beside(force, &Heading { sin, cos }, Vec3::new(cos, sin, T::zero()))
+    attitude_beside(force, &Heading { sin, cos }, Vec3::new(cos, sin, T::zero())).0
 }
 
 record! {
@@ -76,8 +76,10 @@ impl<T: Real> Pointing<T> {
     /// Along `force`, with `b_x` in front.
     #[inline(always)]
     fn new(force: Vec3<T, World>, heading: &Heading<T>) -> Self {
-        let y_c = Vec3::new(-heading.sin, heading.cos, T::zero());
-        Self { force, side: y_c.cross(force), length_squared: force.norm_squared() }
+        let Heading { sin, cos } = *heading;
+        // y_c x F, without the products with the third component of y_c, which is zero.
+        let side = Vec3::new(cos * force.z, sin * force.z, -(sin * force.y + cos * force.x));
+        Self { force, side, length_squared: force.norm_squared() }
     }
 
     /// Upwards where there is no force; with `b_x` on the side of `last`, and along it near the singular
@@ -115,13 +117,13 @@ impl<T: Real> Pointing<T> {
 }
 
 /// [`attitude_along`] beside the previous `b_x`: near the singular direction `b_z || y_c` that is kept,
-/// and passing through it, its side.
+/// and passing through it, its side. Also a vector along the new `b_x`, of any length.
 #[inline(always)]
 fn attitude_beside<T: Real>(
     force: Vec3<T, World>,
     heading: &Heading<T>,
     last: Vec3<T, World>,
-) -> Rotation<T, Body, World> {
+) -> (Rotation<T, Body, World>, Vec3<T, World>) {
     let mut pointing = Pointing::<T>::default();
     let (mut width_squared, mut ahead) = (T::zero(), T::zero());
     for i in 0..T::LANES {
@@ -145,5 +147,8 @@ fn attitude_beside<T: Real>(
         rotation.put(&mut attitude, i);
     }
     // Again the usual case: 4 w^2 above half of the sum of all four is the largest of them.
-    if T::zero().lt(upright).all() { attitude } else { same(&same(&pointing).attitude()) }
+    if !T::zero().lt(upright).all() {
+        attitude = same(&same(&pointing).attitude());
+    }
+    (attitude, pointing.side)
 }

@@ -42,8 +42,8 @@ record! {
         gains: Gains<T> [];
         /// What the law believes of the vehicle.
         model: Model<T> [];
-        /// The forward axis of the previous reference; zero before the first.
-        forward: Vec3<T, World> [1];
+        /// Along the forward axis of the previous reference, of any length; zero before the first.
+        forward: Vec3<T, World> [m/s^2];
         /// The previous reference.
         memory: RateMemory<T> [];
         structure {
@@ -74,10 +74,10 @@ impl<T: Real> Controller<T> for RotationMatrix<T> {
         let heading = heading(thrust.yaw);
         let ahead = Vec3::new(heading.cos, heading.sin, T::zero());
         let last = Vec3::select(T::zero().lt(self.memory.started), self.forward, ahead);
-        let rotation = attitude_beside(thrust.force, &heading, last); // (1-3)
+        let (rotation, side) = attitude_beside(thrust.force, &heading, last); // (1-3)
+        self.forward = side;
         let mut attitude = Attitude { rotation, ..Attitude::default() };
         for i in 0..T::LANES {
-            rotation.pick(i).x_axis().put(&mut self.forward, i);
             let thrust =
                 projected_thrust(&thrust.pick(i), &measurement.pick(i), &self.model.pick(i)); // (4)
             attitude.thrust.set_lane(i, thrust);

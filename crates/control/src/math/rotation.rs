@@ -68,7 +68,7 @@ impl<T: Real, A: Frame, B: Frame> Rotation<T, A, B> {
     /// takes the place of root and division where it has all digits.
     #[inline(always)]
     pub fn renormalised(self) -> Self {
-        let lost = T::one() - (self.w.sq() + self.x.sq() + self.y.sq() + self.z.sq());
+        let lost = T::one() - ((self.w.sq() + self.x.sq()) + (self.y.sq() + self.z.sq()));
         let near = lost.abs().lt(T::lit(1e-6));
         // 1/sqrt(1 - d) = 1 + d/2 + 3 d^2/8 + ...; what is added is small, so rounding takes little of it.
         let more = lost * (T::lit(0.5) + lost * T::lit(0.375));
@@ -157,8 +157,8 @@ impl<T: Real, A: Frame, B: Frame> Rotation<T, A, B> {
     /// well above zero, and of the same bits where no other component is larger.
     #[inline(always)]
     pub fn from_upright_axes(x: Vec3<T, B>, y: Vec3<T, B>, z: Vec3<T, B>, one: T) -> (Self, T) {
-        let w4 = one + x.x + y.y + z.z;
-        let k = T::lit(0.5) / (w4 * one).sqrt();
+        let w4 = (one + x.x) + (y.y + z.z);
+        let k = T::lit(0.5).over_root(w4 * one);
         let (wx, wy, wz) = (y.z - z.y, z.x - x.z, x.y - y.x);
         (Self::from_quaternion(w4 * k, wx * k, wy * k, wz * k), w4)
     }
@@ -166,7 +166,7 @@ impl<T: Real, A: Frame, B: Frame> Rotation<T, A, B> {
     #[inline(always)]
     pub fn from_scaled_axes(x: Vec3<T, B>, y: Vec3<T, B>, z: Vec3<T, B>, one: T) -> Self {
         // Four times the square of each component; the largest is at least one.
-        let w4 = one + x.x + y.y + z.z;
+        let w4 = (one + x.x) + (y.y + z.z);
         let x4 = one + x.x - y.y - z.z;
         let y4 = one - x.x + y.y - z.z;
         let z4 = one - x.x - y.y + z.z;
@@ -185,7 +185,7 @@ impl<T: Real, A: Frame, B: Frame> Rotation<T, A, B> {
         let z = (z4, of(wz, xz, yz, z4));
         let (largest, q) = larger(larger(larger(w, x), y), z);
         // The candidate's norm is four times its own component times `one`.
-        let k = T::lit(0.5) / (largest * one).sqrt();
+        let k = T::lit(0.5).over_root(largest * one);
         Self::from_quaternion(q.w * k, q.x * k, q.y * k, q.z * k)
     }
 }
@@ -229,10 +229,10 @@ impl<T: Real, A: Frame, B: Frame, C: Frame> Mul<Rotation<T, A, B>> for Rotation<
     #[inline(always)]
     fn mul(self, r: Rotation<T, A, B>) -> Rotation<T, A, C> {
         Rotation::from_quaternion(
-            self.w * r.w - self.x * r.x - self.y * r.y - self.z * r.z,
-            self.w * r.x + self.x * r.w + self.y * r.z - self.z * r.y,
-            self.w * r.y - self.x * r.z + self.y * r.w + self.z * r.x,
-            self.w * r.z + self.x * r.y - self.y * r.x + self.z * r.w,
+            (self.w * r.w - self.x * r.x) - (self.y * r.y + self.z * r.z),
+            (self.w * r.x + self.x * r.w) + (self.y * r.z - self.z * r.y),
+            (self.w * r.y + self.y * r.w) + (self.z * r.x - self.x * r.z),
+            (self.w * r.z + self.z * r.w) + (self.x * r.y - self.y * r.x),
         )
     }
 }

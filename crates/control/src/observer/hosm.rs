@@ -4,7 +4,11 @@
 //!   v1  = -lambda1 L^(1/2) [z1 - v0]^(1/2) + z2,   z1' = v1 + u         (2)
 //!   z2' = -lambda0 L [z2 - v1]^0                                        (3)
 //!
-//! with `[a]^p` = |a|^p sign(a). z0, z1, z2 estimate position, velocity and disturbance.
+//! with `[a]^p` = |a|^p sign(a). z0, z1, z2 estimate position, velocity and disturbance. What (2) and (3)
+//! take the root and the sign of is known from (1), without subtracting it out of sums again:
+//!
+//!   z1 - v0 = lambda2 L^(1/3) [z0 - x]^(2/3)
+//!   z2 - v1 = lambda1 L^(1/2) (lambda2 L^(1/3))^(1/2) [z0 - x]^(1/3)    (4)
 //!
 //! | article | here      | unit  | frame |
 //! |---------|-----------|-------|-------|
@@ -22,6 +26,7 @@
 use crate::controller::Observer;
 use crate::math::{Vec3, World};
 use crate::real::Real;
+use crate::record::each;
 use crate::signals::{Applied, Measurement, Model};
 use crate::{choice, options, record};
 
@@ -78,7 +83,7 @@ record! {
         gains: Gains<T> [];
         /// lambda0 L, prepared for (3).
         gain0: T [m/s^3];
-        /// lambda1 L^(1/2), prepared for (2).
+        /// lambda1 L^(1/2) (lambda2 L^(1/3))^(1/2), prepared for (4).
         gain1: T [];
         /// lambda2 L^(1/3), prepared for (1).
         gain2: T [];
@@ -116,8 +121,8 @@ impl<T: Real> Hosm<T> {
     fn prepare(&mut self) {
         let Gains { lipschitz, lambda0, lambda1, lambda2, .. } = self.gains;
         self.gain0 = lambda0 * lipschitz;
-        self.gain1 = lambda1 * lipschitz.sqrt();
         self.gain2 = lambda2 * lipschitz.cbrt();
+        self.gain1 = lambda1 * lipschitz.sqrt() * self.gain2.sqrt();
     }
 }
 
@@ -153,13 +158,15 @@ impl<T: Real> Observer<T> for Hosm<T> {
         };
         let Self { gain0, gain1, gain2, x, z0, z1, z2, .. } = *self;
 
-        let v0 = z1 - (z0 - x).map(T::two_thirds_power) * gain2; // (1)
-        let v1 = z2 - (z1 - v0).map(signed_root) * gain1; // (2)
+        let [third, two_thirds] = thirds(z0 - x);
+        let v0 = z1 - two_thirds * gain2; // (1)
+        let slide = third * gain1; // (4)
+        let v1 = z2 - slide; // (2)
         let z1_dot = match self.options.z2 {
             Z2::Single => v1 + u,
             Z2::Doubled => v1 + u + z2,
         };
-        let z2_dot = -(z2 - v1).map(T::sign) * gain0; // (3)
+        let z2_dot = -slide.map(T::sign) * gain0; // (3)
 
         self.z0 += v0 * dt;
         self.z1 += z1_dot * dt;
@@ -180,8 +187,9 @@ impl<T: Real> Observer<T> for Hosm<T> {
     }
 }
 
-/// |a|^(1/2) sign(a).
+/// `[e]^(1/3)` and `[e]^(2/3)`.
 #[inline(always)]
-fn signed_root<T: Real>(a: T) -> T {
-    a.abs().sqrt().with_sign(a)
+fn thirds<T: Real>(e: Vec3<T, World>) -> [Vec3<T, World>; 2] {
+    let [x, y, z] = each([e.x, e.y, e.z], T::thirds);
+    [Vec3::new(x[0], y[0], z[0]), Vec3::new(x[1], y[1], z[1])]
 }

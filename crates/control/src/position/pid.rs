@@ -81,7 +81,7 @@ impl<T: Real> Controller<T> for Pid<T> {
         let Gains { kp, ki, kd, anti_windup, integral_limit, .. } = self.gains;
         let e = measurement.position - reference.position; // (1)
         let e_dot = measurement.velocity - reference.velocity;
-        let f = -e.scale(kp) - self.integral.scale(ki) - e_dot.scale(kd) + reference.acceleration; // (2)
+        let f = (reference.acceleration - self.integral.scale(ki)) - (e.scale(kp) + e_dot.scale(kd)); // (2)
 
         let refused = measurement.attitude.z_axis()
             * (measurement.unallocated.thrust * self.per_mass);

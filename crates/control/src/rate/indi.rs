@@ -108,10 +108,12 @@ impl<T: Real> Controller<T> for Indi<T> {
                 (self.omega_dot.update(raw), self.torque.update(achieved))
             }
         };
-        let nu = reference.acceleration - (omega - reference.rate).scale(self.gains.k_omega); // (1)
+        // nu - H(omega_dot), in the order in which its parts are known.
+        let missing = (reference.acceleration - omega_dot)
+            - (omega - reference.rate).scale(self.gains.k_omega); // (1)
         Wrench {
             thrust: reference.thrust,
-            torque: tau + (nu - omega_dot).scale(self.model.inertia), // (2)
+            torque: tau + missing.scale(self.model.inertia), // (2)
         }
     }
 
