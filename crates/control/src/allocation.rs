@@ -81,7 +81,7 @@ impl<T: Real> Allocation<T> {
         if self.free(&wish).all() {
             return allocated;
         }
-        for i in 0..T::LANES {
+        for i in 0..T::PARTS {
             self.pick(i).limited(&wish.pick(i), &wrench.pick(i)).put(&mut allocated, i);
         }
         allocated

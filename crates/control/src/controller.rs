@@ -86,12 +86,12 @@ macro_rules! dispatch_controller {
     (@update each $laws:ident $measurement:ident $reference:ident $dt:ident) => {{
         use $crate::record::RecordExt as _;
         let (mut commands, mut weights) = (Self::Command::default(), T::zero());
-        for i in 0..T::LANES {
+        for i in 0..T::PARTS {
             let mut law = $laws.pick(i);
             let (command, weight) =
-                law.update_weighed(&$measurement.pick(i), &$reference.pick(i), $dt.lane(i));
+                law.update_weighed(&$measurement.pick(i), &$reference.pick(i), $dt.part(i));
             command.put(&mut commands, i);
-            weights.set_lane(i, weight);
+            weights.set_part(i, weight);
             law.put($laws, i);
         }
         (commands, weights)
@@ -133,9 +133,9 @@ macro_rules! dispatch_observer {
         use $crate::record::RecordExt as _;
         let mut sums = T::zero();
         match $all { $( Self::$variant(laws) => {
-            for i in 0..T::LANES {
+            for i in 0..T::PARTS {
                 let mut law = laws.pick(i);
-                sums.set_lane(i, law.$step(&$with.pick(i), $dt.lane(i)));
+                sums.set_part(i, law.$step(&$with.pick(i), $dt.part(i)));
                 law.put(laws, i);
             }
         } )+ }

@@ -66,7 +66,7 @@ impl<T: Real, L: Controller<T>> Guarded<T, L, L::Command> {
     /// it is kept for many, who live in memory anyway.
     #[inline(always)]
     pub fn handed<'a>(&'a self, granted: &'a L::Command) -> &'a L::Command {
-        if T::LANES == 1 { granted } else { &self.last }
+        if T::PARTS == 1 { granted } else { &self.last }
     }
 
     /// The last command that was granted.
@@ -307,23 +307,18 @@ macro_rules! guard_record {
                 }
             }
             #[inline(always)]
-            fn pick_lane(&self, i: usize) -> Self::With<T::Scalar> {
+            fn pick_part(&self, i: usize) -> Self::With<T::Part> {
                 $guard {
-                    law: self.law.pick_lane(i),
-                    $kept: self.$kept.pick_lane(i),
-                    flag: self.flag.lane(i),
+                    law: self.law.pick_part(i),
+                    $kept: self.$kept.pick_part(i),
+                    flag: self.flag.part(i),
                 }
             }
             #[inline(always)]
-            fn put_mapped<U: Real<Scalar = T>>(
-                &self,
-                batch: &mut Self::With<U>,
-                i: usize,
-                f: &mut impl FnMut(T) -> T,
-            ) {
-                self.law.put_mapped(&mut batch.law, i, f);
-                self.$kept.put_mapped(&mut batch.$kept, i, f);
-                batch.flag.set_lane(i, f(self.flag));
+            fn onto<U: Real>(&self, batch: &mut Self::With<U>, f: &mut impl FnMut(&mut U, T)) {
+                self.law.onto(&mut batch.law, f);
+                self.$kept.onto(&mut batch.$kept, f);
+                f(&mut batch.flag, self.flag);
             }
             #[inline(always)]
             fn each_variable(&self, f: &mut impl FnMut(T)) {

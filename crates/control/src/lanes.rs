@@ -155,7 +155,7 @@ impl<T: Real, const N: usize> Lanes<T, N> {
     }
 }
 
-impl<T: Real<Mask = bool, Scalar = T>, const N: usize> Lanes<T, N> {
+impl<T: Real<Mask = bool, Scalar = T, Part = T>, const N: usize> Lanes<T, N> {
     #[inline(always)]
     fn compare(self, other: Self, f: impl Fn(T, T) -> bool) -> LaneMask<N> {
         let mut mask = [0; N];
@@ -166,11 +166,13 @@ impl<T: Real<Mask = bool, Scalar = T>, const N: usize> Lanes<T, N> {
     }
 }
 
-impl<T: Real<Mask = bool, Scalar = T>, const N: usize> Real for Lanes<T, N> {
+impl<T: Real<Mask = bool, Scalar = T, Part = T>, const N: usize> Real for Lanes<T, N> {
     type Mask = LaneMask<N>;
     type Scalar = T;
+    type Part = T;
     type Precision = T::Precision;
     const LANES: usize = N;
+    const PARTS: usize = N;
 
     #[inline(always)]
     fn lit(x: f64) -> Self {
@@ -191,6 +193,14 @@ impl<T: Real<Mask = bool, Scalar = T>, const N: usize> Real for Lanes<T, N> {
             *lane = f(i);
         }
         Self(lanes)
+    }
+    #[inline(always)]
+    fn part(&self, i: usize) -> T {
+        self.lane(i)
+    }
+    #[inline(always)]
+    fn set_part(&mut self, i: usize, x: T) {
+        self.set_lane(i, x);
     }
     #[inline(always)]
     fn to_f64(self) -> f64 {

@@ -78,10 +78,14 @@ pub trait Real:
     type Mask: Mask;
     /// The number in one lane.
     type Scalar: Real<Scalar = Self::Scalar>;
+    /// What a loop over the parts takes at once: the number in one lane, or a whole register of several.
+    type Part: Real<Scalar = Self::Scalar, Part = Self::Part>;
     /// Constants of this precision.
     type Precision: Precision;
     /// How many numbers stand side by side.
     const LANES: usize;
+    /// How many parts these are.
+    const PARTS: usize;
 
     /// A literal: every constant enters here, rounded to this precision.
     fn lit(x: f64) -> Self;
@@ -91,6 +95,10 @@ pub trait Real:
     fn set_lane(&mut self, i: usize, x: Self::Scalar);
     /// Builds the number lane by lane: the door for anything that depends on data.
     fn from_lanes(f: impl FnMut(usize) -> Self::Scalar) -> Self;
+    /// Part `i`; parts count from zero and wrap.
+    fn part(&self, i: usize) -> Self::Part;
+    /// Replaces part `i`; parts count from zero and wrap.
+    fn set_part(&mut self, i: usize, x: Self::Part);
     /// The value in double precision; lane zero where there are several.
     fn to_f64(self) -> f64;
 
@@ -262,8 +270,10 @@ macro_rules! float {
         impl Real for $float {
             type Mask = bool;
             type Scalar = $float;
+            type Part = $float;
             type Precision = $precision;
             const LANES: usize = 1;
+            const PARTS: usize = 1;
             #[inline(always)]
             #[allow(clippy::cast_possible_truncation)] // rounding a literal to single is the point
             fn lit(x: f64) -> Self {
@@ -280,6 +290,14 @@ macro_rules! float {
             #[inline(always)]
             fn from_lanes(mut f: impl FnMut(usize) -> $float) -> Self {
                 f(0)
+            }
+            #[inline(always)]
+            fn part(&self, _: usize) -> $float {
+                *self
+            }
+            #[inline(always)]
+            fn set_part(&mut self, _: usize, x: $float) {
+                *self = x;
             }
             #[inline(always)]
             fn to_f64(self) -> f64 {

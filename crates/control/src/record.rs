@@ -102,16 +102,11 @@ pub trait Record<T: Real>: Copy {
         f: &mut impl FnMut([T; N]) -> U,
     ) -> Self::With<U>;
 
-    /// Vehicle `i` of a batch.
-    fn pick_lane(&self, i: usize) -> Self::With<T::Scalar>;
+    /// Part `i` of a batch: what a loop over the parts takes at once.
+    fn pick_part(&self, i: usize) -> Self::With<T::Part>;
 
-    /// Writes `f` of every number of this vehicle's record into lane `i` of a batch.
-    fn put_mapped<U: Real<Scalar = T>>(
-        &self,
-        batch: &mut Self::With<U>,
-        i: usize,
-        f: &mut impl FnMut(T) -> T,
-    );
+    /// Shows every number of a batch of the same structure to `f`, beside this record's.
+    fn onto<U: Real>(&self, batch: &mut Self::With<U>, f: &mut impl FnMut(&mut U, T));
 
     /// Shows every number that may change in flight: all but those declared with a default, which
     /// are settings.
@@ -123,7 +118,7 @@ pub trait Record<T: Real>: Copy {
     #[inline(never)]
     fn finite(&self) -> T::Mask {
         // Zero times a number is zero; zero times an infinity or NaN is NaN, and the sum stays it.
-        self.sum(|x| x * T::Scalar::zero()).eq(T::zero())
+        self.sum(|x| x * T::Part::zero()).eq(T::zero())
     }
 
     /// Sum of the magnitudes of every number that may change in flight; not finite where one is not.
@@ -134,16 +129,16 @@ pub trait Record<T: Real>: Copy {
 
     /// Sum of `f` of every number that may change in flight, lane by lane.
     #[inline(always)]
-    fn sum(&self, f: impl Fn(T::Scalar) -> T::Scalar) -> T {
+    fn sum(&self, f: impl Fn(T::Part) -> T::Part) -> T {
         let mut sums = T::zero();
-        for i in 0..T::LANES {
+        for i in 0..T::PARTS {
             // Four sums in turn: an addition need not wait for the one before it.
-            let (mut part, mut turn) = ([T::Scalar::zero(); 4], 0);
-            self.pick_lane(i).each_variable(&mut |x| {
+            let (mut part, mut turn) = ([T::Part::zero(); 4], 0);
+            self.pick_part(i).each_variable(&mut |x| {
                 part[turn % 4] += f(x);
                 turn += 1;
             });
-            sums.set_lane(i, (part[0] + part[1]) + (part[2] + part[3]));
+            sums.set_part(i, (part[0] + part[1]) + (part[2] + part[3]));
         }
         sums
     }
@@ -205,16 +200,34 @@ pub trait RecordExt<T: Real>: Record<T> {
         Self::zip(rows, &mut |x| Lanes(x))
     }
 
+    /// The same record for every lane of a batch.
+    #[inline(always)]
+    fn everywhere<U: Real<Scalar = T>>(&self) -> Self::With<U> {
+        Self::zip([self], &mut |[x]| U::from_lanes(|_| x))
+    }
+
+    /// Part `i` of a batch: what a loop over the parts takes at once.
+    #[inline(always)]
+    fn pick(&self, i: usize) -> Self::With<T::Part> {
+        self.pick_part(i)
+    }
+
+    /// Writes this record into part `i` of a batch of the same structure.
+    #[inline(always)]
+    fn put<U: Real<Part = T>>(&self, batch: &mut Self::With<U>, i: usize) {
+        self.onto(batch, &mut |place, x| place.set_part(i, x));
+    }
+
     /// Vehicle `i` of a batch.
     #[inline(always)]
-    fn pick(&self, i: usize) -> Self::With<T::Scalar> {
-        self.pick_lane(i)
+    fn pick_lane(&self, i: usize) -> Self::With<T::Scalar> {
+        Self::zip([self], &mut |[x]| x.lane(i))
     }
 
     /// Writes this vehicle's record into lane `i` of a batch of the same structure.
     #[inline(always)]
-    fn put<U: Real<Scalar = T>>(&self, batch: &mut Self::With<U>, i: usize) {
-        self.put_mapped(batch, i, &mut |x| x);
+    fn put_lane<U: Real<Scalar = T>>(&self, batch: &mut Self::With<U>, i: usize) {
+        self.onto(batch, &mut |place, x| place.set_lane(i, x));
     }
 }
 
@@ -237,7 +250,7 @@ pub fn near<T: Real, R: Record<T, With<T> = R> + Copy>(record: &R) -> R {
 /// since what a call looks at does not stay in registers; those of many vehicles live in memory anyway.
 #[inline(always)]
 pub fn shown<T: Real, R: Record<T, With<T> = R>, A>(record: &R, look: impl FnOnce(&R) -> A) -> A {
-    if T::LANES == 1 { look(&same(record)) } else { look(record) }
+    if T::PARTS == 1 { look(&same(record)) } else { look(record) }
 }
 
 /// `new` where the mask says yes, else `old`.
@@ -250,9 +263,11 @@ pub fn blend<T: Real, R: Record<T, With<T> = R>>(mask: T::Mask, new: &R, old: &R
 #[inline(always)]
 pub fn clamp<T: Real, R: Record<T>>(record: &R, limit: T) -> R {
     let mut clamped = *record;
-    for i in 0..T::LANES {
-        let limit = limit.lane(i);
-        record.pick_lane(i).put_mapped::<T>(&mut clamped, i, &mut |x| x.clamp(-limit, limit));
+    for i in 0..T::PARTS {
+        let limit = limit.part(i);
+        record
+            .pick_part(i)
+            .onto::<T>(&mut clamped, &mut |place, x| place.set_part(i, x.clamp(-limit, limit)));
     }
     clamped
 }
@@ -273,12 +288,12 @@ impl<T: Real> Record<T> for T {
         f(each(rows, |x| *x))
     }
     #[inline(always)]
-    fn pick_lane(&self, i: usize) -> T::Scalar {
-        self.lane(i)
+    fn pick_part(&self, i: usize) -> T::Part {
+        self.part(i)
     }
     #[inline(always)]
-    fn put_mapped<U: Real<Scalar = T>>(&self, batch: &mut U, i: usize, f: &mut impl FnMut(T) -> T) {
-        batch.set_lane(i, f(*self));
+    fn onto<U: Real>(&self, batch: &mut U, f: &mut impl FnMut(&mut U, T)) {
+        f(batch, *self);
     }
     #[inline(always)]
     fn each_variable(&self, f: &mut impl FnMut(T)) {
@@ -330,20 +345,15 @@ impl<T: Real, R: Record<T>, const K: usize> Record<T> for [R; K] {
         out
     }
     #[inline(always)]
-    fn pick_lane(&self, i: usize) -> Self::With<T::Scalar> {
-        let mut out = [self[0].pick_lane(i); K];
-        from_one!(K, k => out[k] = self[k].pick_lane(i));
+    fn pick_part(&self, i: usize) -> Self::With<T::Part> {
+        let mut out = [self[0].pick_part(i); K];
+        from_one!(K, k => out[k] = self[k].pick_part(i));
         out
     }
     #[inline(always)]
-    fn put_mapped<U: Real<Scalar = T>>(
-        &self,
-        batch: &mut Self::With<U>,
-        i: usize,
-        f: &mut impl FnMut(T) -> T,
-    ) {
-        self[0].put_mapped(&mut batch[0], i, f);
-        from_one!(K, k => self[k].put_mapped(&mut batch[k], i, f));
+    fn onto<U: Real>(&self, batch: &mut Self::With<U>, f: &mut impl FnMut(&mut U, T)) {
+        self[0].onto(&mut batch[0], f);
+        from_one!(K, k => self[k].onto(&mut batch[k], f));
     }
     #[inline(always)]
     fn each_variable(&self, f: &mut impl FnMut(T)) {
@@ -370,17 +380,11 @@ impl<T: Real> Record<T> for Nothing<T> {
         Nothing(PhantomData)
     }
     #[inline(always)]
-    fn pick_lane(&self, _: usize) -> Nothing<T::Scalar> {
+    fn pick_part(&self, _: usize) -> Nothing<T::Part> {
         Nothing(PhantomData)
     }
     #[inline(always)]
-    fn put_mapped<U: Real<Scalar = T>>(
-        &self,
-        _: &mut Nothing<U>,
-        _: usize,
-        _: &mut impl FnMut(T) -> T,
-    ) {
-    }
+    fn onto<U: Real>(&self, _: &mut Nothing<U>, _: &mut impl FnMut(&mut U, T)) {}
     #[inline(always)]
     fn each_variable(&self, _: &mut impl FnMut(T)) {}
 }
@@ -451,16 +455,16 @@ macro_rules! record {
             }
             #[inline(always)]
             #[allow(unused_variables)] // a record without such numbers uses none
-            fn pick_lane(&self, i: usize) -> $name<T::Scalar> {
+            fn pick_part(&self, i: usize) -> $name<T::Part> {
                 $name {
-                    $( $f: $crate::record::Record::pick_lane(&self.$f, i), )*
+                    $( $f: $crate::record::Record::pick_part(&self.$f, i), )*
                     $( $( $o: self.$o, )* )?
                 }
             }
             #[inline(always)]
             #[allow(unused_variables)] // a record without such numbers uses none
-            fn put_mapped<U: $crate::real::Real<Scalar = T>>(&self, batch: &mut $name<U>, i: usize, f: &mut impl FnMut(T) -> T) {
-                $( $crate::record::Record::put_mapped(&self.$f, &mut batch.$f, i, f); )*
+            fn onto<U: $crate::real::Real>(&self, batch: &mut $name<U>, f: &mut impl FnMut(&mut U, T)) {
+                $( $crate::record::Record::onto(&self.$f, &mut batch.$f, f); )*
             }
             #[inline(always)]
             #[allow(unused_variables)] // a record without such numbers uses none

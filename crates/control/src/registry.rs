@@ -121,13 +121,13 @@ macro_rules! registry {
                 } )+ }
             }
             #[$inline]
-            fn pick_lane(&self, i: usize) -> $name<T::Scalar> {
-                match self { $( Self::$variant(law) => $name::$variant(law.pick_lane(i)), )+ }
+            fn pick_part(&self, i: usize) -> $name<T::Part> {
+                match self { $( Self::$variant(law) => $name::$variant(law.pick_part(i)), )+ }
             }
             #[$inline]
-            fn put_mapped<U: $crate::real::Real<Scalar = T>>(&self, batch: &mut $name<U>, i: usize, f: &mut impl FnMut(T) -> T) {
+            fn onto<U: $crate::real::Real>(&self, batch: &mut $name<U>, f: &mut impl FnMut(&mut U, T)) {
                 match (self, batch) {
-                    $( (Self::$variant(one), $name::$variant(batch)) => one.put_mapped(batch, i, f), )+
+                    $( (Self::$variant(one), $name::$variant(batch)) => one.onto(batch, f), )+
                     // A batch has one structure; a stray row stays outside.
                     #[allow(unreachable_patterns)]
                     _ => {}
@@ -138,7 +138,7 @@ macro_rules! registry {
                 match self { $( Self::$variant(law) => law.each_variable(f), )+ }
             }
             #[$inline]
-            fn sum(&self, f: impl Fn(T::Scalar) -> T::Scalar) -> T {
+            fn sum(&self, f: impl Fn(T::Part) -> T::Part) -> T {
                 match self { $( Self::$variant(law) => law.sum(f), )+ }
             }
             #[$inline]

@@ -21,7 +21,7 @@ use stormpetrel_lab::scenario::Scenario;
 use stormpetrel_lab::shipped::shipped;
 use stormpetrel_plant::actuation::ActuationSettings;
 use stormpetrel_plant::actuation::propulsion::Supply;
-use stormpetrel_plant::dispatch::{Width, Work};
+use stormpetrel_plant::dispatch::{Fleet, Registers, Width, Work};
 use stormpetrel_plant::disturbance::SourceSettings;
 use stormpetrel_plant::dynamics::{Held, Push};
 use stormpetrel_plant::flight::Flight;
@@ -54,10 +54,26 @@ fn alone(flight: &Flight<f64>, ticks: u64) -> f64 {
     Steps { flight, ticks }.run()
 }
 
+/// [`Steps`] of eight vehicles that are all like this one, side by side or pair after pair.
+struct EightAlike<'a> {
+    flight: &'a Flight<f64>,
+    ticks: u64,
+}
+
+impl Fleet for EightAlike<'_> {
+    type Output = ();
+    fn fly<T: Real<Scalar = f64>>(self, registers: impl Registers) {
+        let all: Flight<T> = self.flight.everywhere();
+        for _ in 0..LANES / T::LANES {
+            black_box(registers.run(Steps { flight: &all, ticks: self.ticks }));
+        }
+    }
+}
+
 /// [`Steps`] of eight vehicles at this width; compiled once for each.
 #[inline(never)]
-fn eight(width: Width, flight: &Flight<Eight>, ticks: u64) -> Eight {
-    width.run(Steps { flight, ticks })
+fn eight(width: Width, flight: &Flight<f64>, ticks: u64) {
+    width.fly(EightAlike { flight, ticks });
 }
 
 /// Nanoseconds for one of `count` items: the best of at least five runs and a fifth of a second, in which
@@ -222,17 +238,16 @@ fn closed_loop(name: &str) {
     say("| how | loop | against single | with metrics | against single |\n|---|---|---|---|---|");
     say(&format!("| single | {single:.1} | 1 | {with_metrics:.1} | 1 |"));
     let batch: Vec<Scenario> = (0..LANES).map(|_| one.clone()).collect();
-    let gathered: Flight<Lanes<f64, LANES>> = RecordExt::<f64>::gather([&flight; LANES]);
     for width in Width::available() {
         let lanes = best(TICKS * LANES as u64, || {
-            black_box(eight(width, &gathered, TICKS));
+            eight(width, &flight, TICKS);
         });
         let measured = best(TICKS * LANES as u64, || {
             black_box(fly_batch_at(&batch, width));
         });
         say(&format!(
-            "| eight lanes, {} | {lanes:.1} | {:.2} times | {measured:.1} | {:.2} times |",
-            width.name(),
+            "| {} | {lanes:.1} | {:.2} times | {measured:.1} | {:.2} times |",
+            eight_at(width),
             single / lanes,
             with_metrics / measured
         ));
@@ -244,23 +259,42 @@ fn closed_loop(name: &str) {
     ));
 }
 
+/// How eight vehicles fly at this width.
+fn eight_at(width: Width) -> String {
+    let how = if width == Width::Baseline { "four pairs" } else { "eight lanes" };
+    format!("{how}, {}", width.name())
+}
+
 /// Integration steps of the body alone: Runge-Kutta and rotor lag, without drag.
-struct Plant<T> {
-    flight: Flight<T>,
+struct Plant<'a, T> {
+    flight: &'a Flight<T>,
     steps: u64,
 }
 
-impl<T: Real> Work for Plant<T> {
+impl<T: Real> Work for Plant<'_, T> {
     type Output = Flight<T>;
     #[inline(always)]
     fn run(self) -> Flight<T> {
-        let mut flight = self.flight;
+        let mut flight = *self.flight;
         let held = Held::new(&flight.per, &Push::default());
         let h = flight.control_step;
         for _ in 0..self.steps {
             flight.state = flight.actuation.step(&flight.state, h, &flight.vehicle, &held);
         }
         flight
+    }
+}
+
+/// [`Plant`] of eight vehicles that are all like this one.
+struct EightPlants<'a>(&'a Flight<f64>);
+
+impl Fleet for EightPlants<'_> {
+    type Output = ();
+    fn fly<T: Real<Scalar = f64>>(self, registers: impl Registers) {
+        let all: Flight<T> = self.0.everywhere();
+        for _ in 0..LANES / T::LANES {
+            black_box(registers.run(Plant { flight: &all, steps: TICKS }));
+        }
     }
 }
 
@@ -298,7 +332,6 @@ fn throughput() {
     let mut one = scenario("article/rotors:rate-commanded");
     one.run.substeps = 1.0;
     let flight = one.flight();
-    let gathered: Flight<Eight> = RecordExt::<f64>::gather([&flight; LANES]);
     let widest = Width::widest();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     say(
@@ -310,7 +343,7 @@ fn throughput() {
         say(&format!("| {how} | {} | {} |", rate(plant), rate(closed)));
     };
     let plant = best(TICKS, || {
-        black_box(Plant { flight, steps: TICKS }.run());
+        black_box(Plant { flight: &flight, steps: TICKS }.run());
     });
     let closed = best(TICKS, || {
         black_box(alone(&flight, TICKS));
@@ -319,16 +352,16 @@ fn throughput() {
     let ms = closed * TICKS as f64 * 1e-6;
     let lanes = |width: Width| {
         let plant = best(TICKS * LANES as u64, || {
-            black_box(width.run(Plant { flight: gathered, steps: TICKS }));
+            width.fly(EightPlants(&flight));
         });
         let closed = best(TICKS * LANES as u64, || {
-            black_box(eight(width, &gathered, TICKS));
+            eight(width, &flight, TICKS);
         });
         (plant, closed)
     };
     for width in Width::available() {
         let (plant, closed) = lanes(width);
-        row(&format!("eight lanes, {}", width.name()), plant, closed);
+        row(&eight_at(width), plant, closed);
     }
     let on_all = |work: &(dyn Fn() + Sync)| {
         best(TICKS * (LANES * threads) as u64, || {
@@ -340,12 +373,12 @@ fn throughput() {
         })
     };
     let plant = on_all(&|| {
-        black_box(widest.run(Plant { flight: gathered, steps: TICKS }));
+        widest.fly(EightPlants(&flight));
     });
     let closed = on_all(&|| {
-        black_box(eight(widest, &gathered, TICKS));
+        eight(widest, &flight, TICKS);
     });
-    row(&format!("eight lanes, {}, {threads} threads", widest.name()), plant, closed);
+    row(&format!("{}, {threads} threads", eight_at(widest)), plant, closed);
     say(&format!(
         "\nOne flight of 20 s at 1 kHz with one Runge-Kutta step each, on one core: {ms:.1} ms."
     ));
@@ -430,21 +463,20 @@ fn world() {
     let widest = Width::widest();
     say(&format!(
         "\n## The world\n\nns per closed-loop step of one vehicle, `article/rotors:rate-commanded` with this block switched on.\n\n\
-         | block | single | against nothing | eight lanes, {} | against nothing |\n|---|---|---|---|---|",
-        widest.name()
+         | block | single | against nothing | {} | against nothing |\n|---|---|---|---|---|",
+        eight_at(widest)
     ));
     let mut nothing = None;
     for (name, switch) in BLOCKS {
         let mut one = plain.clone();
         switch(&mut one);
         let flight = one.flight();
-        let gathered: Box<Flight<Eight>> = Box::new(RecordExt::<f64>::gather([&flight; LANES]));
         let ticks = TICKS / 4;
         let single = best(ticks, || {
             black_box(alone(&flight, ticks));
         });
         let lanes = best(ticks * LANES as u64, || {
-            black_box(eight(widest, &gathered, ticks));
+            eight(widest, &flight, ticks);
         });
         let (one, eight) = *nothing.get_or_insert((single, lanes));
         say(&format!(

@@ -1,26 +1,23 @@
-//! Eight flights side by side: a flight that ends makes room for the next one.
+//! Flights side by side: a flight that ends makes room for the next one.
 //!
 //! Flights of one structure share the registers. Each lane has its own beginning, end, step and numbers;
 //! what it computes has the bits of a single flight, whoever its neighbours are.
 
 use std::collections::VecDeque;
 
-use stormpetrel_control::lanes::Lanes;
 use stormpetrel_control::real::{Mask as _, Real};
 use stormpetrel_control::record::RecordExt;
-use stormpetrel_plant::dispatch::{Width, Work};
+use stormpetrel_plant::dispatch::{Fleet, Registers, Width, Work};
 use stormpetrel_plant::flight::Flight;
 
-use crate::fly::{LANES, Outcome, failure, setting};
+use crate::fly::{Outcome, failure, setting};
 use crate::metric::{Distribution, Setting, Sums, metrics};
 use crate::scenario::Scenario;
-
-type Wide = Lanes<f64, LANES>;
 
 /// Flies scenarios of one structure; outcomes in their order. Without `attitude` only the metrics of
 /// the position are taken.
 pub fn fly_alike(scenarios: &[&Scenario], width: Width, attitude: bool) -> Vec<Outcome> {
-    deep(|| fly_together(scenarios, width, attitude))
+    deep(|| width.fly(Alike { scenarios, attitude }))
 }
 
 /// Does the work where there is room: without optimisation every function keeps copies of eight flights,
@@ -42,22 +39,33 @@ fn deep<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
 
-fn fly_together(scenarios: &[&Scenario], width: Width, attitude: bool) -> Vec<Outcome> {
-    let mut outcomes = vec![None; scenarios.len()];
-    let mut waiting: VecDeque<usize> = (0..scenarios.len()).collect();
-    let Some(first) = scenarios.first() else { return Vec::new() };
-    let mut batch = Batch::new(first, attitude && first.has_attitude());
-    loop {
-        batch.board(scenarios, &mut waiting);
-        if batch.seats.iter().all(Option::is_none) && waiting.is_empty() {
-            break;
+/// Flights of one structure.
+struct Alike<'a> {
+    scenarios: &'a [&'a Scenario],
+    attitude: bool,
+}
+
+impl Fleet for Alike<'_> {
+    type Output = Vec<Outcome>;
+
+    fn fly<T: Real<Scalar = f64>>(self, registers: impl Registers) -> Vec<Outcome> {
+        let Self { scenarios, attitude } = self;
+        let mut outcomes = vec![None; scenarios.len()];
+        let mut waiting: VecDeque<usize> = (0..scenarios.len()).collect();
+        let Some(first) = scenarios.first() else { return Vec::new() };
+        let mut batch = Batch::<T>::new(first, attitude && first.has_attitude());
+        loop {
+            batch.board(scenarios, &mut waiting);
+            if batch.seats.iter().all(Option::is_none) && waiting.is_empty() {
+                break;
+            }
+            registers.run(Segment(&mut batch));
+            for (row, outcome) in batch.leave() {
+                outcomes[row] = Some(outcome);
+            }
         }
-        width.run(Segment(&mut batch));
-        for (row, outcome) in batch.leave() {
-            outcomes[row] = Some(outcome);
-        }
+        outcomes.into_iter().flatten().collect()
     }
-    outcomes.into_iter().flatten().collect()
 }
 
 /// Who flies in a lane.
@@ -69,27 +77,28 @@ struct Seat {
     distribution: Distribution,
 }
 
-struct Batch {
-    flight: Flight<Wide>,
-    sums: Sums<Wide>,
-    setting: Setting<Wide>,
+struct Batch<T> {
+    flight: Flight<T>,
+    sums: Sums<T>,
+    setting: Setting<T>,
     /// 1 where a lane is taken.
-    taken: Wide,
-    seats: [Option<Seat>; LANES],
+    taken: T,
+    /// One for each lane.
+    seats: Vec<Option<Seat>>,
     /// Tick at which a waiting flight can board.
     until: u64,
 }
 
-impl Batch {
+impl<T: Real<Scalar = f64>> Batch<T> {
     /// Empty lanes with the structure of this flight.
     fn new(scenario: &Scenario, attitude: bool) -> Self {
         let empty = Flight { alive: 0.0, ..scenario.flight() };
         Self {
-            flight: RecordExt::<f64>::gather([&empty; LANES]),
+            flight: empty.everywhere(),
             sums: Sums::new(),
             setting: Setting { has_attitude: attitude, ..setting(scenario) },
-            taken: Wide::zero(),
-            seats: [const { None }; LANES],
+            taken: T::zero(),
+            seats: (0..T::LANES).map(|_| None).collect(),
             until: u64::MAX,
         }
     }
@@ -104,15 +113,15 @@ impl Batch {
             }
             return;
         }
-        for lane in 0..LANES {
+        for lane in 0..T::LANES {
             if self.seats[lane].is_some() {
                 continue;
             }
             let Some(row) = waiting.pop_front() else { return };
             let (scenario, now) = (scenarios[row], self.flight.tick);
             let flight = Flight { begin: now as f64, ..scenario.flight() };
-            flight.put(&mut self.flight, lane);
-            Sums::<f64>::new().put(&mut self.sums, lane);
+            flight.put_lane(&mut self.flight, lane);
+            Sums::<f64>::new().put_lane(&mut self.sums, lane);
             let Setting { dt, late, gravity, has_attitude } = setting(scenario);
             self.setting.dt.set_lane(lane, dt);
             self.setting.late.set_lane(lane, late);
@@ -126,15 +135,15 @@ impl Batch {
     /// Empties the lanes whose flight is over.
     fn leave(&mut self) -> Vec<(usize, Outcome)> {
         let mut left = Vec::new();
-        for lane in 0..LANES {
+        for lane in 0..T::LANES {
             let over =
                 |seat: &Seat| self.flight.alive.lane(lane) == 0.0 || seat.end <= self.flight.tick;
             let Some(seat) = self.seats[lane].take_if(|seat| over(seat)) else { continue };
             self.taken.set_lane(lane, 0.0);
             self.flight.alive.set_lane(lane, 0.0);
-            let flight: Flight<f64> = RecordExt::pick(&self.flight, lane);
+            let flight: Flight<f64> = self.flight.pick_lane(lane);
             let outcome = Outcome {
-                metrics: metrics(&RecordExt::pick(&self.sums, lane), &seat.distribution),
+                metrics: metrics(&self.sums.pick_lane(lane), &seat.distribution),
                 failure: failure(flight.cause, flight.flown, flight.control_step),
             };
             left.push((seat.row, outcome));
@@ -144,9 +153,9 @@ impl Batch {
 }
 
 /// The closed loop until the first flight of the batch is over, to be compiled for each width.
-struct Segment<'a>(&'a mut Batch);
+struct Segment<'a, T>(&'a mut Batch<T>);
 
-impl Work for Segment<'_> {
+impl<T: Real<Scalar = f64>> Work for Segment<'_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -161,9 +170,9 @@ impl Work for Segment<'_> {
         while flight.tick < until && flight.alive.eq(*taken).all() {
             let tick = flight.decide();
             let errors = sums.push(&tick, setting, flight.alive);
-            for lane in 0..LANES {
-                if let Some(seat) = &mut seats[lane] {
-                    seat.distribution.push(&errors.pick(lane));
+            for (lane, seat) in seats.iter_mut().enumerate() {
+                if let Some(seat) = seat {
+                    seat.distribution.push(&errors.pick_lane(lane));
                 }
             }
             flight.advance(&tick);

@@ -6,6 +6,7 @@ use stormpetrel_control::real::Real;
 use stormpetrel_control::record::Record as _;
 use stormpetrel_plant::actuation::Actuate as _;
 use stormpetrel_plant::actuation::battery::Gauge;
+pub use stormpetrel_plant::dispatch::LANES;
 use stormpetrel_plant::dispatch::Width;
 use stormpetrel_plant::disturbance::MOST;
 use stormpetrel_plant::dynamics::Push;
@@ -15,9 +16,6 @@ use stormpetrel_plant::flight::Tick;
 use crate::batch::fly_alike;
 use crate::metric::{Distribution, Errors, Setting, Sums, metrics};
 use crate::scenario::Scenario;
-
-/// Vehicles in one batch.
-pub const LANES: usize = 8;
 
 /// Why and when a flight ended early.
 #[derive(Clone, Copy, Debug, PartialEq)]

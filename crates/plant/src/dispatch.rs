@@ -2,12 +2,21 @@
 //!
 //! An ordinary build aims at every x86-64 processor; what runs under [`Width::run`] is compiled once
 //! more for AVX2 and once more for AVX-512. The bits are the same in all three: no operation is
-//! contracted or reordered.
+//! contracted or reordered. Several flights at once ([`Width::fly`]) are eight lanes in these, and pairs in
+//! the registers of the smallest width, see [`crate::pair`].
 //!
 //! Large blocks that a plain flight does not need, such as the whole world, are functions of their own
 //! with a boundary of their own ([`wide`]): inlined everywhere they would take minutes to compile.
 
+#[cfg(feature = "std")]
+use stormpetrel_control::lanes::Lanes;
 use stormpetrel_control::real::Real;
+
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+use crate::pair::Pair;
+
+/// Vehicles in one batch, side by side or pair after pair.
+pub const LANES: usize = 8;
 
 /// Work to be compiled for each width.
 ///
@@ -21,12 +30,12 @@ pub trait Work {
     fn run(self) -> Self::Output;
 }
 
-/// Does the work of a block of its own: on the widest registers where `T` has several lanes, as it is for
-/// a single vehicle.
+/// Does the work of a block of its own: on the widest registers where `T` has several parts, as it is where it
+/// is one number or one register.
 #[inline(always)]
 pub fn wide<T: Real, W: Work>(work: W) -> W::Output {
     #[cfg(feature = "std")]
-    if T::LANES > 1 {
+    if T::PARTS > 1 {
         return Width::widest().run(work);
     }
     work.run()
@@ -38,6 +47,52 @@ pub fn wide<T: Real, W: Work>(work: W) -> W::Output {
 #[inline(never)]
 pub fn rarely<R>(work: impl FnOnce() -> R) -> R {
     work()
+}
+
+/// Registers that work can be done in.
+#[cfg(feature = "std")]
+pub trait Registers: Copy {
+    /// Does the work in these registers.
+    fn run<W: Work>(self, work: W) -> W::Output;
+}
+
+/// The registers that the build aims at.
+#[cfg(feature = "std")]
+#[derive(Clone, Copy, Debug)]
+pub struct Ordinary;
+
+#[cfg(feature = "std")]
+impl Registers for Ordinary {
+    // A function of its own, as the other widths are.
+    #[inline(never)]
+    fn run<W: Work>(self, work: W) -> W::Output {
+        work.run()
+    }
+}
+
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+impl Registers for pulp::x86::V3 {
+    #[inline(always)]
+    fn run<W: Work>(self, work: W) -> W::Output {
+        self.vectorize(Inlined(work))
+    }
+}
+
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+impl Registers for pulp::x86::V4 {
+    #[inline(always)]
+    fn run<W: Work>(self, work: W) -> W::Output {
+        self.vectorize(Inlined(work))
+    }
+}
+
+/// Several flights, to be flown in whatever scalar fills the registers.
+#[cfg(feature = "std")]
+pub trait Fleet {
+    /// What comes out.
+    type Output;
+    /// Flies them, `T::LANES` at a time; what each tick does runs on these registers.
+    fn fly<T: Real<Scalar = f64>>(self, registers: impl Registers) -> Self::Output;
 }
 
 /// How wide the registers are that a loop over lanes may use.
@@ -85,6 +140,31 @@ impl Width {
     #[cfg(not(target_arch = "x86_64"))]
     fn supported(self) -> bool {
         self == Self::Baseline
+    }
+
+    /// Flies at this width; at the baseline where the machine is narrower.
+    #[cfg(target_arch = "x86_64")]
+    pub fn fly<F: Fleet>(self, fleet: F) -> F::Output {
+        match self {
+            Self::Avx512 => {
+                if let Some(registers) = pulp::x86::V4::try_new() {
+                    return fleet.fly::<Lanes<f64, LANES>>(registers);
+                }
+            }
+            Self::Avx2 => {
+                if let Some(registers) = pulp::x86::V3::try_new() {
+                    return fleet.fly::<Lanes<f64, LANES>>(registers);
+                }
+            }
+            Self::Baseline => {}
+        }
+        fleet.fly::<Pair>(Ordinary)
+    }
+
+    /// Flies; every width is the baseline on this target.
+    #[cfg(not(target_arch = "x86_64"))]
+    pub fn fly<F: Fleet>(self, fleet: F) -> F::Output {
+        fleet.fly::<Lanes<f64, LANES>>(Ordinary)
     }
 
     /// Does the work at this width; at the baseline where the machine is narrower.

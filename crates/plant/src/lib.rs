@@ -11,6 +11,8 @@ pub mod dispatch;
 pub mod disturbance;
 pub mod dynamics;
 pub mod flight;
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+pub mod pair;
 pub mod random;
 pub mod reference;
 pub mod sensor;

@@ -104,7 +104,7 @@ impl<T: Real> Timing<T> {
             // a whole number from 0 to LATEST
             let back = self.age.lane(i).to_f64() as u64;
             let (row, column) = at(slot.wrapping_sub(back));
-            self.ring[row][column].pick(i).put(&mut acting, i);
+            self.ring[row][column].pick_lane(i).put_lane(&mut acting, i);
         }
         acting
     }

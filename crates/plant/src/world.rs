@@ -113,7 +113,7 @@ impl<T: Real> Scenery<'_, T> {
             load = self.off_centre(&whole.body, &load);
         }
         let mut body = Derivative::default();
-        for i in 0..T::LANES {
+        for i in 0..T::PARTS {
             let (state, around) = (whole.body.pick(i), conditions.pick(i));
             newton_euler(&state, &load.pick(i), &air.pick(i), &vehicle.pick(i), &around)
                 .put(&mut body, i);
@@ -121,9 +121,9 @@ impl<T: Real> Scenery<'_, T> {
         let mut hanging = Hanging::default();
         if conditions.hangs {
             let mut pull = Vec3::zero();
-            for i in 0..T::LANES {
+            for i in 0..T::PARTS {
                 let (now, around) = (whole.hanging.pick(i), conditions.pick(i));
-                let free = body.velocity.pick(i) + Vec3::up(vehicle.gravity.lane(i));
+                let free = body.velocity.pick(i) + Vec3::up(vehicle.gravity.part(i));
                 let hung = hang(&now, free, around.per_mass, &around.sling);
                 hung.pull.put(&mut pull, i);
                 Hanging { place: now.velocity, velocity: hung.acceleration }.put(&mut hanging, i);
@@ -138,7 +138,7 @@ impl<T: Real> Scenery<'_, T> {
     fn air(&self, state: &State<T>) -> Push<T> {
         let mut air = Push::default();
         if self.conditions.airy {
-            for i in 0..T::LANES {
+            for i in 0..T::PARTS {
                 let (state, vehicle) = (state.pick(i), self.vehicle.pick(i));
                 drag(&state, &vehicle, self.conditions.wind.pick(i)).put(&mut air, i);
             }
@@ -150,10 +150,10 @@ impl<T: Real> Scenery<'_, T> {
     #[inline(always)]
     fn off_centre(&self, state: &State<T>, load: &Load<T>) -> Load<T> {
         let mut moved = Load::default();
-        for i in 0..T::LANES {
+        for i in 0..T::PARTS {
             let (load, around) = (load.pick(i), self.conditions.pick(i));
             let thrust_per_mass = load.thrust_per_mass * around.share;
-            let thrust = thrust_per_mass * self.vehicle.mass.lane(i);
+            let thrust = thrust_per_mass * self.vehicle.mass.part(i);
             let along = state.attitude.pick(i).inverse() * thrust;
             Load { thrust_per_mass, torque: load.torque - around.shift.cross(along) }
                 .put(&mut moved, i);
@@ -189,8 +189,8 @@ impl<T: Real> Scenery<'_, T> {
 /// Adds a slope with its weight.
 #[inline(always)]
 fn accumulate<T: Real>(sum: &mut Slope<T>, slope: &Slope<T>, weight: f64) {
-    let weight = T::Scalar::lit(weight);
-    for i in 0..T::LANES {
+    let weight = T::Part::lit(weight);
+    for i in 0..T::PARTS {
         let (so_far, one) = (sum.pick(i), slope.pick(i));
         Slope::zip([&so_far, &one], &mut |[sum, k]| sum + k * weight).put(sum, i);
     }
@@ -200,8 +200,8 @@ fn accumulate<T: Real>(sum: &mut Slope<T>, slope: &Slope<T>, weight: f64) {
 #[inline(always)]
 fn along<T: Real>(state: &Whole<T>, slope: &Slope<T>, h: T, rotor_speed: [T; 4]) -> Whole<T> {
     let mut next = Whole::default();
-    for i in 0..T::LANES {
-        let (state, slope, h) = (state.pick(i), slope.pick(i), h.lane(i));
+    for i in 0..T::PARTS {
+        let (state, slope, h) = (state.pick(i), slope.pick(i), h.part(i));
         let Hanging { place, velocity } = state.hanging;
         Whole {
             body: state.body.along(&slope.body, h, rotor_speed.pick(i)),

@@ -1,4 +1,5 @@
-//! Eight flights side by side have the bits of eight single flights, whatever becomes of each.
+//! Eight flights, side by side in lanes or as four pairs, have the bits of single flights, whatever becomes of
+//! each.
 //!
 //! The eight differ in mass, inertia, gains, disturbance and time step; one leaves its limits half
 //! way, one is pushed so hard that its state overflows.
@@ -14,6 +15,7 @@ use stormpetrel_control::lanes::Lanes;
 use stormpetrel_control::observer::ObserverSettings;
 use stormpetrel_control::observer::hosm::{Input, Z2};
 use stormpetrel_control::options::{Cells, OptionVisitor, Shape};
+use stormpetrel_control::real::Real;
 use stormpetrel_control::record::{Meta, Path, RecordExt, VisitorMut};
 use stormpetrel_control::registry::Settings;
 use stormpetrel_plant::disturbance::{Site, SourceSettings};
@@ -58,38 +60,68 @@ fn singles(actuation: &str, observer: ObserverSettings) -> [Flight<f64>; LANES] 
     })
 }
 
-/// One tick of eight flights; compiled once for all tests.
+type Eight = Lanes<f64, LANES>;
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+use stormpetrel_plant::pair::Pair;
+/// Where there are no pairs, lanes once more.
+#[cfg(not(all(feature = "std", target_arch = "x86_64")))]
+type Pair = Eight;
+
+/// Eight flights, as many at a time as the scalar has lanes.
+struct Together<T>(Vec<Flight<T>>);
+
+impl<T: Real<Scalar = f64>> Together<T> {
+    fn new(singles: &[Flight<f64>; LANES]) -> Self {
+        let group = |group: &[Flight<f64>]| {
+            let mut all: Flight<T> = group[0].everywhere();
+            for (lane, single) in group.iter().enumerate() {
+                single.put_lane(&mut all, lane);
+            }
+            all
+        };
+        Self(singles.chunks(T::LANES).map(group).collect())
+    }
+
+    fn tick(&mut self) -> Vec<Tick<T>> {
+        self.0.iter_mut().map(tick_of).collect()
+    }
+
+    fn flight(&self, i: usize) -> Flight<f64> {
+        self.0[i / T::LANES].pick_lane(i % T::LANES)
+    }
+}
+
+/// One tick; compiled once for all tests.
 #[inline(never)]
-fn tick_of(lanes: &mut Flight<Lanes<f64, LANES>>) -> Tick<Lanes<f64, LANES>> {
-    let decided = lanes.decide();
-    lanes.advance(&decided);
+fn tick_of<T: Real>(flight: &mut Flight<T>) -> Tick<T> {
+    let decided = flight.decide();
+    flight.advance(&decided);
     decided
 }
 
-fn compare(actuation: &str, observer: ObserverSettings) {
+fn compare<T: Real<Scalar = f64>>(actuation: &str, observer: ObserverSettings) {
     let mut singles = singles(actuation, observer);
-    let mut lanes: Flight<Lanes<f64, LANES>> =
-        RecordExt::<f64>::gather(core::array::from_fn(|i| &singles[i]));
+    let mut lanes = Together::<T>::new(&singles);
     for tick in 0..TICKS {
-        let decided = tick_of(&mut lanes);
+        let decided = lanes.tick();
         for (i, single) in singles.iter_mut().enumerate() {
             if tick % 50 == 7 {
                 let one = single.decide();
                 assert_eq!(
-                    bits(&decided.pick(i)),
+                    bits(&decided[i / T::LANES].pick_lane(i % T::LANES)),
                     bits(&one),
                     "{actuation}, lane {i}, tick {tick}"
                 );
                 single.advance(&one);
                 assert_eq!(
-                    bits(&lanes.pick(i)),
+                    bits(&lanes.flight(i)),
                     bits(single),
                     "{actuation}, lane {i}, tick {tick}"
                 );
             } else {
                 step(single);
             }
-            let state = lanes.state.pick(i);
+            let state = lanes.flight(i).state;
             assert_eq!(bits(&state), bits(&single.state), "{actuation}, lane {i}, tick {tick}");
         }
     }
@@ -109,7 +141,8 @@ fn all_observers(actuation: &str) {
         hosm(1.5, Input::Measured, Z2::Single),
         hosm(2.0, Input::Commanded, Z2::Doubled),
     ] {
-        compare(actuation, observer);
+        compare::<Eight>(actuation, observer);
+        compare::<Pair>(actuation, observer);
     }
 }
 
@@ -204,25 +237,21 @@ fn worldly(kinds: &[&str]) -> [Flight<f64>; LANES] {
     })
 }
 
-fn compare_worlds(kinds: &[&str]) {
+fn compare_worlds<T: Real<Scalar = f64>>(kinds: &[&str]) {
     let mut singles = worldly(kinds);
-    let mut lanes: Flight<Lanes<f64, LANES>> =
-        RecordExt::<f64>::gather(core::array::from_fn(|i| &singles[i]));
+    let mut lanes = Together::<T>::new(&singles);
     for tick in 0..400 {
-        tick_of(&mut lanes);
+        lanes.tick();
         for (i, single) in singles.iter_mut().enumerate() {
             step(single);
-            assert_eq!(bits(&lanes.pick(i)), bits(single), "{kinds:?}, lane {i}, tick {tick}");
+            assert_eq!(bits(&lanes.flight(i)), bits(single), "{kinds:?}, lane {i}, tick {tick}");
         }
     }
 }
 
 #[test]
 fn every_disturbance_has_the_bits_of_a_single_one_in_every_lane() {
-    for kind in SourceSettings::NAMES {
-        compare_worlds(&[kind]);
-    }
-    compare_worlds(&[
+    let many = [
         "dryden",
         "jet",
         "noise",
@@ -231,7 +260,11 @@ fn every_disturbance_has_the_bits_of_a_single_one_in_every_lane() {
         "rotor-efficiency",
         "imbalance",
         "gust",
-    ]);
+    ];
+    for kinds in SourceSettings::NAMES.chunks(1).chain([many.as_slice()]) {
+        compare_worlds::<Eight>(kinds);
+        compare_worlds::<Pair>(kinds);
+    }
 }
 
 #[test]
@@ -253,6 +286,11 @@ fn a_clock_that_began_long_ago_changes_no_bit() {
 
 #[test]
 fn eight_flights_with_other_laws_have_the_bits_of_single_ones() {
+    compare_laws::<Eight>();
+    compare_laws::<Pair>();
+}
+
+fn compare_laws<T: Real<Scalar = f64>>() {
     for (rates, attitude, rate) in
         [(Rates::Commanded, "euler", "pid"), (Rates::Trajectory, "tilt-priority", "pid")]
     {
@@ -262,13 +300,13 @@ fn eight_flights_with_other_laws_have_the_bits_of_single_ones() {
             (scene.attitude, scene.rate) = (named(attitude), named(rate));
             scene.flight()
         });
-        let mut lanes: Flight<Lanes<f64, LANES>> =
-            RecordExt::<f64>::gather(core::array::from_fn(|i| &singles[i]));
+        let mut lanes = Together::<T>::new(&singles);
         for tick in 0..TICKS / 4 {
-            tick_of(&mut lanes);
+            lanes.tick();
             for (i, single) in singles.iter_mut().enumerate() {
                 step(single);
-                assert_eq!(bits(&lanes.state.pick(i)), bits(&single.state), "lane {i}, {tick}");
+                let state = lanes.flight(i).state;
+                assert_eq!(bits(&state), bits(&single.state), "lane {i}, {tick}");
             }
         }
     }

@@ -5,14 +5,13 @@
 //! its own, so that a change shows where it acts. The same flights side by side in eight lanes, with
 //! different numbers in the lanes where a structure has several flights, must give the same.
 
-use stormpetrel_control::lanes::Lanes;
-use stormpetrel_control::real::Real as _;
+use stormpetrel_control::real::Real;
 use stormpetrel_control::record::RecordExt;
-use stormpetrel_lab::fly::{LANES, fly};
+use stormpetrel_lab::fly::fly;
 use stormpetrel_lab::log::Hash;
 use stormpetrel_lab::scenario::Scenario;
 use stormpetrel_lab::shipped::{SHIPPED, shipped};
-use stormpetrel_plant::dispatch::{Width, Work};
+use stormpetrel_plant::dispatch::{Fleet, Registers, Width, Work};
 use stormpetrel_plant::flight::Flight;
 
 /// Ticks that count of a flight.
@@ -69,34 +68,33 @@ pub fn alone(flights: &[Scenario]) -> Vec<Flown> {
     flights.iter().map(one).collect()
 }
 
-/// Flies up to eight flights of one structure side by side in registers of this width. Where there are
-/// fewer, doubles of the last fill the lanes.
+/// Flies flights of one structure side by side in registers of this width. Where there are fewer than lanes,
+/// doubles of the last fill them.
 pub fn side_by_side(flights: &[Scenario], width: Width) -> Vec<Flown> {
-    let mut waiting: Vec<&Scenario> = flights.iter().collect();
-    let mut flown = Vec::new();
-    while let Some(first) = waiting.first() {
-        let structure = first.structure();
-        let (mut group, mut others): (Vec<&Scenario>, Vec<&Scenario>) =
-            waiting.iter().partition(|scenario| scenario.structure() == structure);
-        others.splice(0..0, group.split_off(group.len().min(LANES)));
-        flown.extend(batch(&group, width));
-        waiting = others;
-    }
+    let mut flown = width.fly(SideBySide(flights));
     let place = |done: &Flown| flights.iter().position(|scenario| scenario.name == done.name);
     flown.sort_by_key(place);
     flown
 }
 
-/// These flights in the lanes of one batch.
-fn batch(group: &[&Scenario], width: Width) -> Vec<Flown> {
-    let row = |lane: usize| group[if lane < group.len() { lane } else { group.len() - 1 }];
-    let rows: [Flight<f64>; LANES] = std::array::from_fn(|lane| row(lane).flight());
-    let blank = |scenario: &&Scenario| Hashed { name: scenario.name.clone(), ..Hashed::default() };
-    width.run(Batch {
-        flight: RecordExt::<f64>::gather(std::array::from_fn(|lane| &rows[lane])),
-        ticks: row(0).ticks(),
-        hashed: group.iter().map(blank).collect(),
-    })
+struct SideBySide<'a>(&'a [Scenario]);
+
+impl Fleet for SideBySide<'_> {
+    type Output = Vec<Flown>;
+
+    fn fly<T: Real<Scalar = f64>>(self, registers: impl Registers) -> Vec<Flown> {
+        let mut waiting: Vec<&Scenario> = self.0.iter().collect();
+        let mut flown = Vec::new();
+        while let Some(first) = waiting.first() {
+            let structure = first.structure();
+            let (mut group, mut others): (Vec<&Scenario>, Vec<&Scenario>) =
+                waiting.iter().partition(|scenario| scenario.structure() == structure);
+            others.splice(0..0, group.split_off(group.len().min(T::LANES)));
+            flown.extend(registers.run(Batch::<T>::new(&group)));
+            waiting = others;
+        }
+        flown
+    }
 }
 
 #[derive(Default)]
@@ -107,13 +105,27 @@ struct Hashed {
 }
 
 /// The closed loop over a batch, to be compiled for each width.
-struct Batch {
-    flight: Flight<Lanes<f64, LANES>>,
+struct Batch<T> {
+    flight: Flight<T>,
     ticks: u64,
     hashed: Vec<Hashed>,
 }
 
-impl Work for Batch {
+impl<T: Real<Scalar = f64>> Batch<T> {
+    /// These flights, and doubles of the last in the lanes that are left.
+    fn new(group: &[&Scenario]) -> Self {
+        let row = |lane: usize| group[if lane < group.len() { lane } else { group.len() - 1 }];
+        let blank =
+            |scenario: &&Scenario| Hashed { name: scenario.name.clone(), ..Hashed::default() };
+        let mut flight: Flight<T> = row(0).flight().everywhere();
+        for lane in 1..T::LANES {
+            row(lane).flight().put_lane(&mut flight, lane);
+        }
+        Self { flight, ticks: row(0).ticks(), hashed: group.iter().map(blank).collect() }
+    }
+}
+
+impl<T: Real<Scalar = f64>> Work for Batch<T> {
     type Output = Vec<Flown>;
 
     #[inline(always)]
@@ -123,7 +135,7 @@ impl Work for Batch {
             let mut any = false;
             for (lane, hashed) in self.hashed.iter_mut().enumerate() {
                 if self.flight.alive.lane(lane) > 0.0 {
-                    hashed.hash.push(&tick.pick(lane));
+                    hashed.hash.push(&tick.pick_lane(lane));
                     hashed.ticks += 1;
                     any = true;
                 }

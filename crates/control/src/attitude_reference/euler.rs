@@ -96,11 +96,11 @@ impl<T: Real> Controller<T> for EulerAngles<T> {
     #[inline(always)]
     fn update(&mut self, measurement: &Measurement<T>, thrust: &Thrust<T>, _: T) -> Attitude<T> {
         let mut attitude = Attitude::<T>::default();
-        for i in 0..T::LANES {
+        for i in 0..T::PARTS {
             let thrust = thrust.pick(i);
             angles(&thrust, self.options.pitch).put(&mut attitude.rotation, i);
             let thrust = projected_thrust(&thrust, &measurement.pick(i), &self.model.pick(i)); // (3)
-            attitude.thrust.set_lane(i, thrust);
+            attitude.thrust.set_part(i, thrust);
         }
         let rotation = &attitude.rotation;
         let (rate, acceleration) = self.memory.update(self.options.rates, rotation, thrust);

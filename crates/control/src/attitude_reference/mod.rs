@@ -126,10 +126,10 @@ fn attitude_beside<T: Real>(
 ) -> (Rotation<T, Body, World>, Vec3<T, World>) {
     let mut pointing = Pointing::<T>::default();
     let (mut width_squared, mut ahead) = (T::zero(), T::zero());
-    for i in 0..T::LANES {
+    for i in 0..T::PARTS {
         let one = Pointing::new(force.pick(i), &heading.pick(i));
-        width_squared.set_lane(i, one.side.norm_squared());
-        ahead.set_lane(i, one.side.dot(last.pick(i)));
+        width_squared.set_part(i, one.side.norm_squared());
+        ahead.set_part(i, one.side.dot(last.pick(i)));
         one.put(&mut pointing, i);
     }
     let none = pointing.length_squared.lt(T::lit(1e-12));
@@ -140,10 +140,10 @@ fn attitude_beside<T: Real>(
     }
 
     let (mut attitude, mut upright) = (Rotation::default(), T::zero());
-    for i in 0..T::LANES {
+    for i in 0..T::PARTS {
         let ([x, y, z], one) = pointing.pick(i).axes();
         let (rotation, w4) = Rotation::from_upright_axes(x, y, z, one);
-        upright.set_lane(i, w4 - T::Scalar::lit(2.25) * one);
+        upright.set_part(i, w4 - T::Part::lit(2.25) * one);
         rotation.put(&mut attitude, i);
     }
     // Again the usual case: 4 w^2 above half of the sum of all four is the largest of them.

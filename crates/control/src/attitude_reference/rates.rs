@@ -68,14 +68,14 @@ impl<T: Real> RateMemory<T> {
         match source {
             Rates::Zero => {}
             Rates::Trajectory => {
-                for i in 0..T::LANES {
+                for i in 0..T::PARTS {
                     let (omega, alpha) = flatness_rates(rotation.pick(i), &thrust.pick(i));
                     omega.put(&mut rate, i);
                     alpha.put(&mut acceleration, i);
                 }
             }
             Rates::Commanded => {
-                for i in 0..T::LANES {
+                for i in 0..T::PARTS {
                     let omega = self.pick(i).difference(rotation.pick(i));
                     omega.put(&mut rate, i);
                 }

@@ -77,10 +77,10 @@ impl<T: Real> Controller<T> for RotationMatrix<T> {
         let (rotation, side) = attitude_beside(thrust.force, &heading, last); // (1-3)
         self.forward = side;
         let mut attitude = Attitude { rotation, ..Attitude::default() };
-        for i in 0..T::LANES {
+        for i in 0..T::PARTS {
             let thrust =
                 projected_thrust(&thrust.pick(i), &measurement.pick(i), &self.model.pick(i)); // (4)
-            attitude.thrust.set_lane(i, thrust);
+            attitude.thrust.set_part(i, thrust);
         }
         let (rate, acceleration) = self.memory.update(self.options.rates, &rotation, thrust);
         Attitude { rate, acceleration, ..attitude }

@@ -267,26 +267,21 @@ impl<T: Real, A: Frame, B: Frame> Record<T> for Rotation<T, A, B> {
         }
     }
     #[inline(always)]
-    fn pick_lane(&self, i: usize) -> Rotation<T::Scalar, A, B> {
+    fn pick_part(&self, i: usize) -> Rotation<T::Part, A, B> {
         Rotation {
-            w: self.w.lane(i),
-            x: self.x.lane(i),
-            y: self.y.lane(i),
-            z: self.z.lane(i),
+            w: self.w.part(i),
+            x: self.x.part(i),
+            y: self.y.part(i),
+            z: self.z.part(i),
             frames: PhantomData,
         }
     }
     #[inline(always)]
-    fn put_mapped<U: Real<Scalar = T>>(
-        &self,
-        batch: &mut Rotation<U, A, B>,
-        i: usize,
-        f: &mut impl FnMut(T) -> T,
-    ) {
-        batch.w.set_lane(i, f(self.w));
-        batch.x.set_lane(i, f(self.x));
-        batch.y.set_lane(i, f(self.y));
-        batch.z.set_lane(i, f(self.z));
+    fn onto<U: Real>(&self, batch: &mut Rotation<U, A, B>, f: &mut impl FnMut(&mut U, T)) {
+        f(&mut batch.w, self.w);
+        f(&mut batch.x, self.x);
+        f(&mut batch.y, self.y);
+        f(&mut batch.z, self.z);
     }
     #[inline(always)]
     fn each_variable(&self, f: &mut impl FnMut(T)) {

@@ -201,19 +201,14 @@ impl<T: Real, F: Frame> Record<T> for Vec3<T, F> {
         }
     }
     #[inline(always)]
-    fn pick_lane(&self, i: usize) -> Vec3<T::Scalar, F> {
-        Vec3 { x: self.x.lane(i), y: self.y.lane(i), z: self.z.lane(i), frame: PhantomData }
+    fn pick_part(&self, i: usize) -> Vec3<T::Part, F> {
+        Vec3 { x: self.x.part(i), y: self.y.part(i), z: self.z.part(i), frame: PhantomData }
     }
     #[inline(always)]
-    fn put_mapped<U: Real<Scalar = T>>(
-        &self,
-        batch: &mut Vec3<U, F>,
-        i: usize,
-        f: &mut impl FnMut(T) -> T,
-    ) {
-        batch.x.set_lane(i, f(self.x));
-        batch.y.set_lane(i, f(self.y));
-        batch.z.set_lane(i, f(self.z));
+    fn onto<U: Real>(&self, batch: &mut Vec3<U, F>, f: &mut impl FnMut(&mut U, T)) {
+        f(&mut batch.x, self.x);
+        f(&mut batch.y, self.y);
+        f(&mut batch.z, self.z);
     }
     #[inline(always)]
     fn each_variable(&self, f: &mut impl FnMut(T)) {

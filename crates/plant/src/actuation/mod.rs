@@ -91,7 +91,7 @@ macro_rules! dispatch_actuate {
             #[inline(always)]
             pub fn wrench(&self, state: &State<T>) -> Wrench<T> {
                 let mut wrench = Wrench::default();
-                match self { $( Self::$variant(all) => for i in 0..T::LANES {
+                match self { $( Self::$variant(all) => for i in 0..T::PARTS {
                     let (one, state) = (all.pick(i), state.pick(i));
                     Wrench { thrust: one.thrust(&state), torque: one.torque(&state) }.put(&mut wrench, i);
                 } )+ }
@@ -107,7 +107,7 @@ macro_rules! dispatch_actuate {
                         return load;
                     }
                     let mut load = Load::default();
-                    for i in 0..T::LANES {
+                    for i in 0..T::PARTS {
                         let (one, state) = (all.pick(i), state.pick(i));
                         let thrust_per_mass = one.thrust_per_mass(&state, &vehicle.pick(i));
                         Load { thrust_per_mass, torque: one.torque(&state) }.put(&mut load, i);
@@ -122,8 +122,8 @@ macro_rules! dispatch_actuate {
                 let mut next = *state;
                 match self { $( Self::$variant(all) => {
                     all.pass(h);
-                    for i in 0..T::LANES {
-                        along_mean(&state.pick(i), h.lane(i), &vehicle.pick(i), &all.pick(i), &held.pick(i))
+                    for i in 0..T::PARTS {
+                        along_mean(&state.pick(i), h.part(i), &vehicle.pick(i), &all.pick(i), &held.pick(i))
                             .put(&mut next, i);
                     }
                 } )+ }
@@ -156,7 +156,7 @@ macro_rules! dispatch_actuate {
             #[inline(always)]
             fn thrust_per_mass(&self, state: &State<T>, vehicle: &Vehicle<T>) -> Vec3<T, World> {
                 let mut thrust = Vec3::zero();
-                match self { $( Self::$variant(all) => for i in 0..T::LANES {
+                match self { $( Self::$variant(all) => for i in 0..T::PARTS {
                     all.pick(i).thrust_per_mass(&state.pick(i), &vehicle.pick(i)).put(&mut thrust, i);
                 } )+ }
                 thrust

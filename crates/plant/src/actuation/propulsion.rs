@@ -284,13 +284,13 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
         around: &Conditions<T>,
     ) -> Option<Load<T>> {
         let mut through: Vec3<T, Body> = Vec3::zero();
-        for i in 0..T::LANES {
+        for i in 0..T::PARTS {
             through_air(&state.pick(i), around.wind.pick(i)).put(&mut through, i);
         }
         let mut sum: Wrench<T> = Wrench::default();
         for index in 0..4 {
             let rotor = self.turning(index, state.rotor_speed[index]);
-            for i in 0..T::LANES {
+            for i in 0..T::PARTS {
                 let (state, vehicle) = (state.pick(i), vehicle.pick(i));
                 let flow = through.pick(i) - state.rate.cross(around.shift.pick(i));
                 let one = rotor.pick(i).wrench(&state, &vehicle, flow);
@@ -300,10 +300,10 @@ impl<T: Real> Actuate<T> for Propulsion<T> {
             }
         }
         let mut load: Load<T> = Load::default();
-        for i in 0..T::LANES {
+        for i in 0..T::PARTS {
             let Wrench { thrust, torque } = sum.pick(i);
             let up = state.attitude.pick(i).z_axis();
-            Load { thrust_per_mass: up * (thrust * self.per_mass.lane(i)), torque }.put(&mut load, i);
+            Load { thrust_per_mass: up * (thrust * self.per_mass.part(i)), torque }.put(&mut load, i);
         }
         Some(load)
     }

@@ -168,7 +168,7 @@ macro_rules! dispatch_disturb {
                 let (mut push, scene) = (Push::default(), *scene);
                 match self { $( Self::$variant(all) => {
                     let mut local = *all;
-                    for i in 0..T::LANES {
+                    for i in 0..T::PARTS {
                         let mut one = local.pick(i);
                         one.push(&scene.pick(i)).put(&mut push, i);
                         if one.remembers() {
@@ -186,7 +186,7 @@ macro_rules! dispatch_disturb {
                 let (mut wind, scene) = (Vec3::zero(), *scene);
                 match self { $( Self::$variant(all) => {
                     let mut local = *all;
-                    for i in 0..T::LANES {
+                    for i in 0..T::PARTS {
                         let mut one = local.pick(i);
                         one.wind(&scene.pick(i)).put(&mut wind, i);
                         if one.remembers() {

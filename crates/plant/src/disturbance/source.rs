@@ -79,9 +79,9 @@ impl<T: Real> Source<T> {
     pub fn harmonic(&self, time: T, mass: T) -> Option<Push<T>> {
         let Disturbance::Harmonic(all) = &self.what else { return None };
         let mut push = Push::default();
-        for i in 0..T::LANES {
-            let (time, window) = (time.lane(i), self.window.pick(i));
-            let Push { force, torque } = all.pick(i).at(time - window.start, mass.lane(i));
+        for i in 0..T::PARTS {
+            let (time, window) = (time.part(i), self.window.pick(i));
+            let Push { force, torque } = all.pick(i).at(time - window.start, mass.part(i));
             let on = window.start.le(time) & time.lt(window.end);
             let force = Vec3::select(on, force, Vec3::zero());
             Push { force, torque: Vec3::select(on, torque, Vec3::zero()) }.put(&mut push, i);

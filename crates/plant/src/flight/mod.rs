@@ -365,11 +365,11 @@ impl<T: Real> Flight<T> {
     #[inline(always)]
     fn lumped(&self, push: &Push<T>) -> Vec3<T, World> {
         let mut lumped = Vec3::zero();
-        for i in 0..T::LANES {
-            let (thrust, per_mass) = (self.thrust_per_mass.pick(i), self.per.mass.lane(i));
+        for i in 0..T::PARTS {
+            let (thrust, per_mass) = (self.thrust_per_mass.pick(i), self.per.mass.part(i));
             let (vehicle, model) = (self.vehicle.pick(i), self.model.pick(i));
             let a = acceleration(thrust, push.force.pick(i) * per_mass, vehicle.gravity);
-            let expected = thrust * (vehicle.mass * self.belief.lane(i));
+            let expected = thrust * (vehicle.mass * self.belief.part(i));
             let lump = (a + Vec3::up(model.gravity)) * model.mass - expected;
             lump.put(&mut lumped, i);
         }
@@ -433,9 +433,9 @@ impl<T: Real> Flight<T> {
     fn judge(&mut self, tick: &Tick<T>) {
         let Limits { position_error, tilt_deg, ground } = self.limits;
         let mut error = T::zero();
-        for i in 0..T::LANES {
+        for i in 0..T::PARTS {
             let e = tick.position.pick(i) - tick.reference.position.pick(i);
-            error.set_lane(i, e.norm_squared());
+            error.set_part(i, e.norm_squared());
         }
         let far = position_error.sq().lt(error);
         let low = tick.position.z.lt(ground);

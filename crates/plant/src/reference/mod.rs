@@ -24,8 +24,8 @@ macro_rules! dispatch_refer {
             fn at(&self, time: T) -> Trajectory<T> {
                 match self { $( Self::$variant(all) => {
                     let mut at = Trajectory::default();
-                    for i in 0..T::LANES {
-                        all.pick(i).at(time.lane(i)).put(&mut at, i);
+                    for i in 0..T::PARTS {
+                        all.pick(i).at(time.part(i)).put(&mut at, i);
                     }
                     at
                 } )+ }

@@ -91,7 +91,7 @@ impl Curve {
     pub fn at<T: Real>(&self, phase: Jet<T>) -> Trajectory<T> {
         let mut at = Trajectory::default();
         for i in 0..T::LANES {
-            self.one(each(phase, |x| x.lane(i))).put(&mut at, i);
+            self.one(each(phase, |x| x.lane(i))).put_lane(&mut at, i);
         }
         at
     }
