@@ -237,7 +237,7 @@ impl<T: Real, R: Record<T>> RecordExt<T> for R {}
 /// written have left the store buffer, and one of many vehicles would be a call.
 #[inline(always)]
 pub fn same<T: Real, R: Record<T, With<T> = R>>(record: &R) -> R {
-    R::zip([record], &mut |[x]| x)
+    if T::LANES > T::PARTS { *record } else { R::zip([record], &mut |[x]| x) }
 }
 
 /// The same record, copied as [`same`] does for one vehicle; as a whole for many, who live in memory anyway.

@@ -29,32 +29,35 @@ use stormpetrel_plant::sensor::SensorSettings;
 
 const TICKS: u64 = 20_000;
 
-/// Steps without log or metrics.
-struct Steps<'a, T> {
-    flight: &'a Flight<T>,
+/// Steps without log or metrics; flights take turns.
+struct Steps<'a, T, const N: usize> {
+    flights: &'a [Flight<T>; N],
     ticks: u64,
 }
 
-impl<T: Real> Work for Steps<'_, T> {
-    type Output = T;
+impl<T: Real, const N: usize> Work for Steps<'_, T, N> {
+    type Output = [T; N];
     #[inline(always)]
-    fn run(self) -> T {
-        let mut flight = *self.flight;
+    fn run(self) -> [T; N] {
+        let mut flights = *self.flights;
         for _ in 0..self.ticks {
-            let tick = flight.decide();
-            flight.advance(&tick);
+            for k in 0..N {
+                let flight = &mut flights[k];
+                let tick = flight.decide();
+                flight.advance(&tick);
+            }
         }
-        flight.state.position.x
+        flights.map(|flight| flight.state.position.x)
     }
 }
 
 /// [`Steps`] of one vehicle; compiled once.
 #[inline(never)]
-fn alone(flight: &Flight<f64>, ticks: u64) -> f64 {
-    Steps { flight, ticks }.run()
+fn alone(flight: &Flight<f64>, ticks: u64) -> [f64; 1] {
+    Steps { flights: std::array::from_ref(flight), ticks }.run()
 }
 
-/// [`Steps`] of eight vehicles that are all like this one, side by side or pair after pair.
+/// [`Steps`] of eight vehicles that are all like this one.
 struct EightAlike<'a> {
     flight: &'a Flight<f64>,
     ticks: u64,
@@ -62,11 +65,9 @@ struct EightAlike<'a> {
 
 impl Fleet for EightAlike<'_> {
     type Output = ();
-    fn fly<T: Real<Scalar = f64>>(self, registers: impl Registers) {
-        let all: Flight<T> = self.flight.everywhere();
-        for _ in 0..LANES / T::LANES {
-            black_box(registers.run(Steps { flight: &all, ticks: self.ticks }));
-        }
+    fn fly<T: Real<Scalar = f64>, const N: usize>(self, registers: impl Registers) {
+        let flights: [Flight<T>; N] = [self.flight.everywhere(); N];
+        black_box(registers.run(Steps { flights: &flights, ticks: self.ticks }));
     }
 }
 
@@ -266,22 +267,25 @@ fn eight_at(width: Width) -> String {
 }
 
 /// Integration steps of the body alone: Runge-Kutta and rotor lag, without drag.
-struct Plant<'a, T> {
-    flight: &'a Flight<T>,
+struct Plant<'a, T, const N: usize> {
+    flights: &'a [Flight<T>; N],
     steps: u64,
 }
 
-impl<T: Real> Work for Plant<'_, T> {
-    type Output = Flight<T>;
+impl<T: Real, const N: usize> Work for Plant<'_, T, N> {
+    type Output = [Flight<T>; N];
     #[inline(always)]
-    fn run(self) -> Flight<T> {
-        let mut flight = *self.flight;
-        let held = Held::new(&flight.per, &Push::default());
-        let h = flight.control_step;
+    fn run(self) -> [Flight<T>; N] {
+        let mut flights = *self.flights;
+        let held = Held::new(&flights[0].per, &Push::default());
+        let h = flights[0].control_step;
         for _ in 0..self.steps {
-            flight.state = flight.actuation.step(&flight.state, h, &flight.vehicle, &held);
+            for k in 0..N {
+                let flight = &mut flights[k];
+                flight.state = flight.actuation.step(&flight.state, h, &flight.vehicle, &held);
+            }
         }
-        flight
+        flights
     }
 }
 
@@ -290,11 +294,9 @@ struct EightPlants<'a>(&'a Flight<f64>);
 
 impl Fleet for EightPlants<'_> {
     type Output = ();
-    fn fly<T: Real<Scalar = f64>>(self, registers: impl Registers) {
-        let all: Flight<T> = self.0.everywhere();
-        for _ in 0..LANES / T::LANES {
-            black_box(registers.run(Plant { flight: &all, steps: TICKS }));
-        }
+    fn fly<T: Real<Scalar = f64>, const N: usize>(self, registers: impl Registers) {
+        let flights: [Flight<T>; N] = [self.0.everywhere(); N];
+        black_box(registers.run(Plant { flights: &flights, steps: TICKS }));
     }
 }
 
@@ -343,7 +345,7 @@ fn throughput() {
         say(&format!("| {how} | {} | {} |", rate(plant), rate(closed)));
     };
     let plant = best(TICKS, || {
-        black_box(Plant { flight: &flight, steps: TICKS }.run());
+        black_box(Plant { flights: std::array::from_ref(&flight), steps: TICKS }.run());
     });
     let closed = best(TICKS, || {
         black_box(alone(&flight, TICKS));

@@ -48,12 +48,12 @@ struct Alike<'a> {
 impl Fleet for Alike<'_> {
     type Output = Vec<Outcome>;
 
-    fn fly<T: Real<Scalar = f64>>(self, registers: impl Registers) -> Vec<Outcome> {
+    fn fly<T: Real<Scalar = f64>, const N: usize>(self, registers: impl Registers) -> Vec<Outcome> {
         let Self { scenarios, attitude } = self;
         let mut outcomes = vec![None; scenarios.len()];
         let mut waiting: VecDeque<usize> = (0..scenarios.len()).collect();
         let Some(first) = scenarios.first() else { return Vec::new() };
-        let mut batch = Batch::<T>::new(first, attitude && first.has_attitude());
+        let mut batch = Batch::<T, N>::new(first, attitude && first.has_attitude());
         loop {
             batch.board(scenarios, &mut waiting);
             if batch.seats.iter().all(Option::is_none) && waiting.is_empty() {
@@ -77,73 +77,85 @@ struct Seat {
     distribution: Distribution,
 }
 
-struct Batch<T> {
+/// Flights that share the lanes of one scalar.
+#[derive(Clone, Copy)]
+struct Group<T> {
     flight: Flight<T>,
     sums: Sums<T>,
-    setting: Setting<T>,
     /// 1 where a lane is taken.
     taken: T,
-    /// One for each lane.
+}
+
+struct Batch<T, const N: usize> {
+    groups: [Group<T>; N],
+    settings: [Setting<T>; N],
+    /// One for each lane, group after group.
     seats: Vec<Option<Seat>>,
     /// Tick at which a waiting flight can board.
     until: u64,
 }
 
-impl<T: Real<Scalar = f64>> Batch<T> {
+impl<T: Real<Scalar = f64>, const N: usize> Batch<T, N> {
     /// Empty lanes with the structure of this flight.
     fn new(scenario: &Scenario, attitude: bool) -> Self {
         let empty = Flight { alive: 0.0, ..scenario.flight() };
+        let group = Group { flight: empty.everywhere(), sums: Sums::new(), taken: T::zero() };
         Self {
-            flight: empty.everywhere(),
-            sums: Sums::new(),
-            setting: Setting { has_attitude: attitude, ..setting(scenario) },
-            taken: T::zero(),
-            seats: (0..T::LANES).map(|_| None).collect(),
+            groups: [group; N],
+            settings: [Setting { has_attitude: attitude, ..setting(scenario) }; N],
+            seats: (0..N * T::LANES).map(|_| None).collect(),
             until: u64::MAX,
         }
     }
 
+    /// Ticks since the batch began.
+    fn now(&self) -> u64 {
+        self.groups[0].flight.tick
+    }
+
     /// Fills the empty lanes, where the slower loops begin their round.
     fn board(&mut self, scenarios: &[&Scenario], waiting: &mut VecDeque<usize>) {
-        let period = self.flight.period();
+        let (now, period) = (self.now(), self.groups[0].flight.period());
         self.until = u64::MAX;
-        if !self.flight.tick.is_multiple_of(period) {
+        if !now.is_multiple_of(period) {
             if !waiting.is_empty() && self.seats.iter().any(Option::is_none) {
-                self.until = self.flight.tick.next_multiple_of(period);
+                self.until = now.next_multiple_of(period);
             }
             return;
         }
-        for lane in 0..T::LANES {
-            if self.seats[lane].is_some() {
+        for (place, seat) in self.seats.iter_mut().enumerate() {
+            if seat.is_some() {
                 continue;
             }
             let Some(row) = waiting.pop_front() else { return };
-            let (scenario, now) = (scenarios[row], self.flight.tick);
+            let (scenario, lane) = (scenarios[row], place % T::LANES);
+            let (group, own) =
+                (&mut self.groups[place / T::LANES], &mut self.settings[place / T::LANES]);
             let flight = Flight { begin: now as f64, ..scenario.flight() };
-            flight.put_lane(&mut self.flight, lane);
-            Sums::<f64>::new().put_lane(&mut self.sums, lane);
+            flight.put_lane(&mut group.flight, lane);
+            Sums::<f64>::new().put_lane(&mut group.sums, lane);
             let Setting { dt, late, gravity, has_attitude } = setting(scenario);
-            self.setting.dt.set_lane(lane, dt);
-            self.setting.late.set_lane(lane, late);
-            self.setting.gravity.set_lane(lane, gravity);
-            self.taken.set_lane(lane, 1.0);
-            let distribution = Distribution::new(has_attitude && self.setting.has_attitude);
-            self.seats[lane] = Some(Seat { row, end: now + scenario.ticks(), distribution });
+            own.dt.set_lane(lane, dt);
+            own.late.set_lane(lane, late);
+            own.gravity.set_lane(lane, gravity);
+            group.taken.set_lane(lane, 1.0);
+            let distribution = Distribution::new(has_attitude && own.has_attitude);
+            *seat = Some(Seat { row, end: now + scenario.ticks(), distribution });
         }
     }
 
     /// Empties the lanes whose flight is over.
     fn leave(&mut self) -> Vec<(usize, Outcome)> {
-        let mut left = Vec::new();
-        for lane in 0..T::LANES {
-            let over =
-                |seat: &Seat| self.flight.alive.lane(lane) == 0.0 || seat.end <= self.flight.tick;
-            let Some(seat) = self.seats[lane].take_if(|seat| over(seat)) else { continue };
-            self.taken.set_lane(lane, 0.0);
-            self.flight.alive.set_lane(lane, 0.0);
-            let flight: Flight<f64> = self.flight.pick_lane(lane);
+        let (now, mut left) = (self.now(), Vec::new());
+        for (place, seat) in self.seats.iter_mut().enumerate() {
+            let (group, lane) = (&mut self.groups[place / T::LANES], place % T::LANES);
+            let over = |seat: &Seat| group.flight.alive.lane(lane) == 0.0 || seat.end <= now;
+            let Some(seat) = seat.take_if(|seat| over(seat)) else { continue };
+            group.taken.set_lane(lane, 0.0);
+            group.flight.alive.set_lane(lane, 0.0);
+            let flight: Flight<f64> = group.flight.pick_lane(lane);
             let outcome = Outcome {
-                metrics: metrics(&self.sums.pick_lane(lane), &seat.distribution),
+                metrics: metrics(&group.sums.pick_lane(lane), &seat.distribution),
                 failure: failure(flight.cause, flight.flown, flight.control_step),
             };
             left.push((seat.row, outcome));
@@ -153,30 +165,38 @@ impl<T: Real<Scalar = f64>> Batch<T> {
 }
 
 /// The closed loop until the first flight of the batch is over, to be compiled for each width.
-struct Segment<'a, T>(&'a mut Batch<T>);
+struct Segment<'a, T, const N: usize>(&'a mut Batch<T, N>);
 
-impl<T: Real<Scalar = f64>> Work for Segment<'_, T> {
+impl<T: Real<Scalar = f64>, const N: usize> Work for Segment<'_, T, N> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let Batch { flight: fleet, sums: total, setting, taken, seats, until } = self.0;
-        // Copies of what changes at every tick: what others may reach does not stay in registers.
-        let (mut flight, mut sums) = (*fleet, *total);
+        let Batch { groups: fleet, settings, seats, until } = self.0;
+        // A copy of what changes at every tick: what others may reach does not stay in registers.
+        let mut groups = *fleet;
         for seat in seats.iter().flatten() {
             *until = seat.end.min(*until);
         }
         let until = *until;
-        while flight.tick < until && flight.alive.eq(*taken).all() {
-            let tick = flight.decide();
-            let errors = sums.push(&tick, setting, flight.alive);
-            for (lane, seat) in seats.iter_mut().enumerate() {
-                if let Some(seat) = seat {
-                    seat.distribution.push(&errors.pick_lane(lane));
-                }
-            }
-            flight.advance(&tick);
+        let mut all = true;
+        for group in &groups {
+            all &= group.flight.alive.eq(group.taken).all();
         }
-        (*fleet, *total) = (flight, sums);
+        while all && groups[0].flight.tick < until {
+            for k in 0..N {
+                let Group { flight, sums, taken } = &mut groups[k];
+                let tick = flight.decide();
+                let errors = sums.push(&tick, &settings[k], flight.alive);
+                for lane in 0..T::LANES {
+                    if let Some(Some(seat)) = seats.get_mut(k * T::LANES + lane) {
+                        seat.distribution.push(&errors.pick_lane(lane));
+                    }
+                }
+                flight.advance(&tick);
+                all &= flight.alive.eq(*taken).all();
+            }
+        }
+        *fleet = groups;
     }
 }

@@ -15,7 +15,7 @@ use stormpetrel_control::real::Real;
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 use crate::pair::Pair;
 
-/// Vehicles in one batch, side by side or pair after pair.
+/// Vehicles in one batch: eight side by side, or four pairs whose ticks take turns.
 pub const LANES: usize = 8;
 
 /// Work to be compiled for each width.
@@ -91,8 +91,9 @@ impl Registers for pulp::x86::V4 {
 pub trait Fleet {
     /// What comes out.
     type Output;
-    /// Flies them, `T::LANES` at a time; what each tick does runs on these registers.
-    fn fly<T: Real<Scalar = f64>>(self, registers: impl Registers) -> Self::Output;
+    /// Flies them in `N` groups of `T::LANES`, [`LANES`] in all, whose ticks take turns: what one group waits
+    /// for, the next need not. What each tick does runs on these registers.
+    fn fly<T: Real<Scalar = f64>, const N: usize>(self, registers: impl Registers) -> Self::Output;
 }
 
 /// How wide the registers are that a loop over lanes may use.
@@ -148,23 +149,23 @@ impl Width {
         match self {
             Self::Avx512 => {
                 if let Some(registers) = pulp::x86::V4::try_new() {
-                    return fleet.fly::<Lanes<f64, LANES>>(registers);
+                    return fleet.fly::<Lanes<f64, LANES>, 1>(registers);
                 }
             }
             Self::Avx2 => {
                 if let Some(registers) = pulp::x86::V3::try_new() {
-                    return fleet.fly::<Lanes<f64, LANES>>(registers);
+                    return fleet.fly::<Lanes<f64, LANES>, 1>(registers);
                 }
             }
             Self::Baseline => {}
         }
-        fleet.fly::<Pair>(Ordinary)
+        fleet.fly::<Pair, 4>(Ordinary)
     }
 
     /// Flies; every width is the baseline on this target.
     #[cfg(not(target_arch = "x86_64"))]
     pub fn fly<F: Fleet>(self, fleet: F) -> F::Output {
-        fleet.fly::<Lanes<f64, LANES>>(Ordinary)
+        fleet.fly::<Lanes<f64, LANES>, 1>(Ordinary)
     }
 
     /// Does the work at this width; at the baseline where the machine is narrower.

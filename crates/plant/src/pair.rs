@@ -219,6 +219,14 @@ impl Real for Pair {
         Self(max_m128d(self.0, other.0))
     }
     #[inline(always)]
+    fn sign(self) -> Self {
+        let (positive, negative) = (Self::zero().lt(self), self.lt(Self::zero()));
+        Self(bitor_m128d(
+            bitand_m128d(positive.0, set_splat_m128d(1.0)),
+            bitand_m128d(negative.0, set_splat_m128d(-1.0)),
+        ))
+    }
+    #[inline(always)]
     fn with_sign(self, other: Self) -> Self {
         let negative = other.lt(Self::zero());
         Self(bitor_m128d(self.abs().0, bitand_m128d(negative.0, bits(SIGN))))

@@ -82,7 +82,7 @@ struct SideBySide<'a>(&'a [Scenario]);
 impl Fleet for SideBySide<'_> {
     type Output = Vec<Flown>;
 
-    fn fly<T: Real<Scalar = f64>>(self, registers: impl Registers) -> Vec<Flown> {
+    fn fly<T: Real<Scalar = f64>, const N: usize>(self, registers: impl Registers) -> Vec<Flown> {
         let mut waiting: Vec<&Scenario> = self.0.iter().collect();
         let mut flown = Vec::new();
         while let Some(first) = waiting.first() {

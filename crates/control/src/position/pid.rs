@@ -83,14 +83,10 @@ impl<T: Real> Controller<T> for Pid<T> {
         let e_dot = measurement.velocity - reference.velocity;
         let f = (reference.acceleration - self.integral.scale(ki)) - (e.scale(kp) + e_dot.scale(kd)); // (2)
 
-        let refused = measurement.attitude.z_axis()
-            * (measurement.unallocated.thrust * self.per_mass);
-        self.integral += (e + refused * anti_windup) * dt; // (3)
-        // `clamp` would turn a sum that is not a number into one; so it stays for the guard to see.
-        self.integral = self.integral.map(|s| {
-            let s = T::select(integral_limit.lt(s), integral_limit, s);
-            T::select(s.lt(-integral_limit), -integral_limit, s)
-        });
+        let refused = measurement.unallocated.thrust * self.per_mass;
+        self.integral += (e + measurement.attitude.up(refused * anti_windup)) * dt; // (3)
+        // In this order a sum that is not a number stays for the guard to see.
+        self.integral = self.integral.map(|s| (-integral_limit).max(integral_limit.min(s)));
 
         Thrust {
             force: f + Vec3::up(self.model.gravity), // (4)
