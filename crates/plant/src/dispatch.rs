@@ -15,7 +15,7 @@ use stormpetrel_control::real::Real;
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 use crate::pair::Pair;
 
-/// Vehicles in one batch: eight side by side, or four pairs whose ticks take turns.
+/// Vehicles side by side in one scalar where registers are wide.
 pub const LANES: usize = 8;
 
 /// Work to be compiled for each width.
@@ -63,8 +63,7 @@ pub struct Ordinary;
 
 #[cfg(feature = "std")]
 impl Registers for Ordinary {
-    // A function of its own, as the other widths are.
-    #[inline(never)]
+    #[inline(always)]
     fn run<W: Work>(self, work: W) -> W::Output {
         work.run()
     }
@@ -91,8 +90,8 @@ impl Registers for pulp::x86::V4 {
 pub trait Fleet {
     /// What comes out.
     type Output;
-    /// Flies them in `N` groups of `T::LANES`, [`LANES`] in all, whose ticks take turns: what one group waits
-    /// for, the next need not. What each tick does runs on these registers.
+    /// Flies them in `N` groups of `T::LANES` whose ticks take turns: what one group waits for, the next need
+    /// not. What each tick does runs on these registers.
     fn fly<T: Real<Scalar = f64>, const N: usize>(self, registers: impl Registers) -> Self::Output;
 }
 
@@ -159,7 +158,7 @@ impl Width {
             }
             Self::Baseline => {}
         }
-        fleet.fly::<Pair, 4>(Ordinary)
+        fleet.fly::<Pair, 2>(Ordinary)
     }
 
     /// Flies; every width is the baseline on this target.

@@ -2,10 +2,11 @@
 //!
 //!   nu  = alpha - K_omega (omega - omega_des)                            (1)
 //!   tau = H(tau_achieved) + I (nu - H(omega_dot)),  omega_dot = (omega_k - omega_(k-1))/dt   (2)
+//!       = I nu + H(tau_achieved - I omega_dot)                           (3)
 //!
 //! with alpha = alpha_ref - K_theta e from the attitude law. The same filter H stands on both signals:
-//! only then does their difference I omega_dot - tau show the disturbance and not the filter. `filter =
-//! "none"` is the article's form (H = 1, the torque of the previous step).
+//! only then does their difference show the disturbance and not the filter. As it is linear, (3) filters
+//! that difference, once. `filter = "none"` is the article's form (H = 1, the torque of the previous step).
 //!
 //! | article | here                 | unit    | frame |
 //! |---------|----------------------|---------|-------|
@@ -65,10 +66,8 @@ record! {
         previous: Vec3<T, Body> [rad/s];
         /// Time between two ticks.
         clock: Clock<T> [];
-        /// Filter of the angular acceleration.
-        omega_dot: Butterworth<T> [];
-        /// Filter of the achieved torque.
-        torque: Butterworth<T> [];
+        /// Filter of the achieved torque less what the angular acceleration shows of it.
+        filter: Butterworth<T> [];
         structure {
             /// Choices.
             options: Options;
@@ -91,46 +90,38 @@ impl<T: Real> Controller<T> for Indi<T> {
     fn tune(&mut self, dt: T) {
         self.clock.tune(dt);
         if self.options.filter == Filter::Butterworth {
-            self.omega_dot.tune(self.gains.cutoff_hz, dt);
-            self.torque.tune(self.gains.cutoff_hz, dt);
+            self.filter.tune(self.gains.cutoff_hz, dt);
         }
     }
 
     #[inline(always)]
     fn update(&mut self, measurement: &Measurement<T>, reference: &Rate<T>, _: T) -> Wrench<T> {
         let omega = measurement.rate;
-        let raw = (omega - self.previous) * self.clock.per_step;
+        let omega_dot = (omega - self.previous) * self.clock.per_step; // (2)
         self.previous = omega;
-        let achieved = measurement.achieved.torque;
-        let (omega_dot, tau) = match self.options.filter {
-            Filter::Absent => (raw, achieved),
-            Filter::Butterworth => {
-                (self.omega_dot.update(raw), self.torque.update(achieved))
-            }
+        let inertia = self.model.inertia;
+        let beside = measurement.achieved.torque - omega_dot.scale(inertia);
+        let beside = match self.options.filter {
+            Filter::Absent => beside,
+            Filter::Butterworth => self.filter.update(beside),
         };
-        // nu - H(omega_dot), in the order in which its parts are known.
-        let missing = (reference.acceleration - omega_dot)
-            - (omega - reference.rate).scale(self.gains.k_omega); // (1)
-        Wrench {
-            thrust: reference.thrust,
-            torque: tau + missing.scale(self.model.inertia), // (2)
-        }
+        let nu = reference.acceleration - (omega - reference.rate).scale(self.gains.k_omega); // (1)
+        Wrench { thrust: reference.thrust, torque: nu.scale(inertia) + beside } // (3)
     }
 
     #[inline(always)]
     fn hidden(&self) -> T {
         match self.options.filter {
             Filter::Absent => self.sum(|x| x),
-            // The coefficients and the clock are in the command or in what the filters keep.
-            Filter::Butterworth => self.omega_dot.kept() + self.torque.kept(),
+            // The coefficients and the clock are in the command or in what the filter keeps.
+            Filter::Butterworth => self.filter.kept(),
         }
     }
 
     fn reset(&mut self, measurement: &Measurement<T>) {
         self.previous = measurement.rate;
         self.clock = Clock::default();
-        self.omega_dot = Butterworth::default();
-        self.torque = Butterworth::default();
+        self.filter = Butterworth::default();
     }
 
     fn limit(&self) -> T {
