@@ -1,9 +1,9 @@
-//! Is the loop over eight lanes one function for each register width?
+//! Is the loop over several vehicles one function for each register width?
 //!
-//! A function that is not inlined is compiled for the smallest width: two lanes at a time, and its
-//! arguments through memory. No result shows that, only the time. So the machine code of the
-//! loop is read: where it calls, how wide it computes, and that no multiplication is fused with an
-//! addition, which would round once instead of twice.
+//! A function that is not inlined is compiled for the smallest width, with its arguments through memory.
+//! No result shows that, only the time. So the machine code of the loop is read: where it calls, how wide
+//! it computes, and that no multiplication is fused with an addition, which would round once instead of
+//! twice.
 
 use crate::binary::{Binary, Function};
 use crate::code::Code;
@@ -11,7 +11,7 @@ use crate::run::{Step, target_dir};
 
 /// A compilation of the loop: name, parts of its function's name, registers it must compute in.
 const WIDTHS: [(&str, [&str; 2], &str); 3] = [
-    ("baseline", ["dispatch::Width", "run"], "%xmm"),
+    ("baseline", ["dispatch::Ordinary", "run"], "%xmm"),
     ("avx2", ["V3", "vectorize::imp"], "%ymm"),
     ("avx512", ["V4", "vectorize::imp"], "%zmm"),
 ];

@@ -63,7 +63,8 @@ pub struct Ordinary;
 
 #[cfg(feature = "std")]
 impl Registers for Ordinary {
-    #[inline(always)]
+    // A function of its own, as the other widths are.
+    #[inline(never)]
     fn run<W: Work>(self, work: W) -> W::Output {
         work.run()
     }

@@ -169,13 +169,10 @@ pub fn along_mean<T: Real>(
     let k2 = slope(&state.along(&k1, h.half(), half_way));
     let k3 = slope(&state.along(&k2, h.half(), half_way));
     let k4 = slope(&state.along(&k3, h, end));
-    let sum: Derivative<T> = record::Record::zip([&k1, &k2, &k3, &k4], &mut |[a, b, c, d]| {
-        let middle = b + c;
-        (a + middle) + (middle + d)
-    });
-    let mut next = state.along(&sum, h * T::lit(1.0 / 6.0), end);
-    // (1) is linear: the velocities of the four stages are the first one and what the slopes added to it.
-    let gained = k1.velocity + (k2.velocity + k3.velocity);
-    next.position = state.position + (state.velocity * h + gained * (h.sq() * T::lit(1.0 / 6.0)));
-    next
+    let (two, six) = (T::lit(2.0), T::lit(6.0));
+    let mut sum: Derivative<T> =
+        record::Record::zip([&k1, &k2, &k3, &k4], &mut |[a, b, c, d]| (a + d) + (b + c) * two);
+    // The velocities of the four stages are state.velocity and what the slopes before added to it.
+    sum.position = state.velocity * six + (k1.velocity + k2.velocity + k3.velocity) * h;
+    state.along(&sum, h * T::lit(1.0 / 6.0), end)
 }
