@@ -56,9 +56,11 @@ impl<T: Real> Reciprocals<T> {
     /// Of this vehicle.
     pub fn new(vehicle: &Vehicle<T>) -> Self {
         let i = vehicle.inertia;
-        let inertia = i.map(|i| T::one() / i);
-        let coupling = Vec3::new(i.y - i.z, i.z - i.x, i.x - i.y).scale(inertia);
-        Self { mass: T::one() / vehicle.mass, inertia, coupling }
+        Self {
+            mass: T::one() / vehicle.mass,
+            inertia: i.map(|i| T::one() / i),
+            coupling: Vec3::new((i.y - i.z) / i.x, (i.z - i.x) / i.y, (i.x - i.y) / i.z),
+        }
     }
 }
 
