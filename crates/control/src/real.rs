@@ -338,7 +338,7 @@ macro_rules! float {
                 let n = n.to_bits();
                 let (s, c) = if n & 1 == 0 { (sine, cosine) } else { (cosine, sine) };
                 let sign = |n: $bits| (n >> 1) << ($bits::BITS - 1);
-                let (s, c) = (s.to_bits() ^ sign(n), c.to_bits() ^ sign(n + 1));
+                let (s, c) = (s.to_bits() ^ sign(n), c.to_bits() ^ sign(n.wrapping_add(1)));
                 (<$float>::from_bits(s), <$float>::from_bits(c))
             }
             #[inline(always)]

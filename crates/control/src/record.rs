@@ -234,7 +234,8 @@ pub trait RecordExt<T: Real>: Record<T> {
 impl<T: Real, R: Record<T>> RecordExt<T> for R {}
 
 /// The same record, copied number by number: a copy in wider pieces would wait until the numbers just
-/// written have left the store buffer, and one of many vehicles would be a call.
+/// written have left the store buffer, and one of many vehicles would be a call. As a whole where a part is a
+/// register of several numbers: then the pieces are as wide as what was written.
 #[inline(always)]
 pub fn same<T: Real, R: Record<T, With<T> = R>>(record: &R) -> R {
     if T::LANES > T::PARTS { *record } else { R::zip([record], &mut |[x]| x) }

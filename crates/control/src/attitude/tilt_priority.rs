@@ -52,11 +52,11 @@ impl<T: Real> TiltPriority<T> {
 #[inline(always)]
 fn error<T: Real>(q_e: Rotation<T, Body, Body>) -> Vec3<T, Body> {
     let Rotation { w, x, y, z, .. } = q_e;
-    let (two, n_squared) = (T::lit(-2.0), w.sq() + z.sq());
+    let (minus_two, n_squared) = (T::lit(-2.0), w.sq() + z.sq());
     let upside_down = n_squared.lt(T::lit(1e-18));
-    let k = two.over_root(T::select(upside_down, T::one(), n_squared)); // -2/N
+    let k = minus_two.over_root(T::select(upside_down, T::one(), n_squared)); // -2/N
     Vec3::new(
-        T::select(upside_down, two, (w * x - y * z) * k), // (2)
+        T::select(upside_down, minus_two, (w * x - y * z) * k), // (2)
         T::select(upside_down, T::zero(), (w * y + x * z) * k),
         (z * T::one().with_sign(w)) * k, // (3)
     )

@@ -88,7 +88,7 @@ impl<T: Real> Controller<T> for RotationMatrix<T> {
 
     #[inline(always)]
     fn hidden(&self) -> T {
-        // The forward axis and the previous reference are those of the command.
+        // The previous reference is the command's, and the forward axis was made of what the command was made of.
         self.memory.per_step()
     }
 
