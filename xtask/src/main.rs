@@ -21,7 +21,7 @@ cargo xtask <task>
   lint         formatting, clippy, documentation, all without warnings
   unit         tests of all crates in debug and release
   schema       is scenarios/schema.json what the program prints? (`schema --write` renews it)
-  disassembly  is the loop over eight lanes one function for each register width, nothing fused?
+  disassembly  is the loop over several vehicles one function for each register width, nothing fused?
   targets      control and plant build for microcontroller and browser, without std
   firmware     do recorded flights give the same bits on a Cortex-M4F? (in QEMU)
   symbols      is the control stack on a microcontroller free of panics and heap?

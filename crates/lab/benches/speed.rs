@@ -227,7 +227,7 @@ fn laws() {
     }
 }
 
-/// One block of the closed loop: single, and eight lanes at each width.
+/// One block of the closed loop: single, and eight vehicles at each width.
 fn closed_loop(name: &str) {
     let one = scenario(name);
     let flight = one.flight();
@@ -264,7 +264,8 @@ fn closed_loop(name: &str) {
 
 /// How eight vehicles fly at this width.
 fn eight_at(width: Width) -> String {
-    let how = if width == Width::Baseline { "pairs" } else { "eight lanes" };
+    let pairs = width == Width::Baseline && cfg!(target_arch = "x86_64");
+    let how = if pairs { "pairs" } else { "eight lanes" };
     format!("{how}, {}", width.name())
 }
 

@@ -2,8 +2,8 @@
 //!
 //! Every flight of every shipped scenario file counts with the first [`TICKS`] ticks, those in
 //! [`WHOLE`] with all; of each tick every number that the log has, bit by bit. Each flight has a hash of
-//! its own, so that a change shows where it acts. The same flights side by side, in eight lanes or in pairs, with
-//! different numbers in the lanes where a structure has several flights, must give the same.
+//! its own, so that a change shows where it acts. The same flights side by side, in eight lanes or in pairs,
+//! with different numbers in the lanes where a structure has several flights, must give the same.
 
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record::RecordExt;

@@ -2,7 +2,7 @@
 //!
 //! | module | on | what |
 //! |---|---|---|
-//! | [`experiment`] | host, WASM | flies every shipped scenario, alone and in eight lanes, and hashes every number |
+//! | [`experiment`] | host, WASM | flies every shipped scenario, alone and side by side, and hashes every number |
 //! | [`recipe`] | host | says which flights are recorded: every registered law is in one |
 //! | [`record`] | host | writes down what a control stack was told and what it answered |
 //! | [`replay`] | everywhere | tells a stack the same again and compares every bit of its answers |

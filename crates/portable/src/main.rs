@@ -22,9 +22,9 @@ fn run() -> Result<(), String> {
     let single = text(&alone(&flights));
     for width in Width::available() {
         if let Some(found) = changed(&single, &side_by_side(&flights, width)) {
-            return Err(format!("eight lanes at {}: {found}", width.name()));
+            return Err(format!("side by side at {}: {found}", width.name()));
         }
-        eprintln!("eight lanes, {}: the bits of single flights", width.name());
+        eprintln!("side by side, {}: the bits of single flights", width.name());
     }
     std::io::stdout().write_all(single.as_bytes()).map_err(|error| error.to_string())
 }
