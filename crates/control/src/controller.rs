@@ -78,13 +78,16 @@ pub trait Observer<T: Real>: Plain<T> {
 
 /// Implements [`Controller`] for a registry.
 ///
-/// A law is run vehicle by vehicle: the loop vectoriser takes it as a whole, and only its scalar form
-/// is ever compiled. A law with larger parts that depend on an option loops over the lanes itself,
-/// inside its match; its registry says `whole`.
+/// A law is run part by part: the loop vectoriser takes it as a whole, and only its scalar form is ever
+/// compiled. Where there is one part, it is run in its place. A law with larger parts that depend on an
+/// option loops over the parts itself, inside its match; its registry says `whole`.
 #[macro_export]
 macro_rules! dispatch_controller {
     (@update each $laws:ident $measurement:ident $reference:ident $dt:ident) => {{
         use $crate::record::RecordExt as _;
+        if T::PARTS == 1 {
+            return $laws.update_weighed($measurement, $reference, $dt);
+        }
         let (mut commands, mut weights) = (Self::Command::default(), T::zero());
         for i in 0..T::PARTS {
             let mut law = $laws.pick(i);
@@ -126,13 +129,16 @@ macro_rules! dispatch_controller {
     };
 }
 
-/// Implements [`Observer`] for a registry, vehicle by vehicle as [`dispatch_controller`] does.
+/// Implements [`Observer`] for a registry, part by part as [`dispatch_controller`] does.
 #[macro_export]
 macro_rules! dispatch_observer {
     (@each [$($variant:ident)+] $all:ident $step:ident $with:ident $dt:ident) => {{
         use $crate::record::RecordExt as _;
         let mut sums = T::zero();
         match $all { $( Self::$variant(laws) => {
+            if T::PARTS == 1 {
+                return laws.$step($with, $dt);
+            }
             for i in 0..T::PARTS {
                 let mut law = laws.pick(i);
                 sums.set_part(i, law.$step(&$with.pick(i), $dt.part(i)));

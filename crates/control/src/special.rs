@@ -200,11 +200,10 @@ pub fn asin<T: Real>(x: T) -> T {
 #[inline(always)]
 pub fn atan2<T: Real>(y: T, x: T) -> T {
     let known = x.eq(x) & y.eq(y);
-    let y = T::select(known, finite(y), T::zero());
-    let x = T::select(known, finite(x), T::zero());
-    let steep = x.abs().lt(y.abs());
-    let long = T::select(steep, y.abs(), x.abs());
-    let short = T::select(steep, x.abs(), y.abs());
+    // The smaller of the two is a number, also where the other is none.
+    let (across, up) = (x.abs().min(largest()), y.abs().min(largest()));
+    let steep = across.lt(up);
+    let (long, short) = (across.max(up), across.min(up));
     // A power of two keeps what follows from overflow and from subnormal numbers; where it rounds
     // the short side, the quotient underflows.
     let two_60 = T::lit(1152921504606846976.0);
@@ -216,7 +215,7 @@ pub fn atan2<T: Real>(y: T, x: T) -> T {
     let upper = (long * T::lit(0.6875)).lt(short);
     let (hi_1, lo_1) = two_parts::<T>(FRAC_PI_4, FRAC_PI_2_REST * 0.5);
     let (hi_h, lo_h) = two_parts::<T>(ATAN_HALF[0], ATAN_HALF[1]);
-    let pick = |a, b| T::select(upper, a, T::select(middle, b, T::zero()));
+    let pick = |a, b| T::select(middle, T::select(upper, a, b), T::zero());
     let pivot = pick(T::one(), T::lit(0.5));
     let (pivot_hi, pivot_lo) = (pick(hi_1, hi_h), pick(lo_1, lo_h));
     let quotient = (short - pivot * long) / (long + pivot * short).max(T::lit(T::Precision::TINY));
@@ -233,7 +232,8 @@ pub fn atan2<T: Real>(y: T, x: T) -> T {
     let side = T::select(left, -T::one(), T::one());
     let turn = T::select(steep, side, -side);
     let (main, lost) = less(axis, turn * pivot_hi);
-    (main + (lost + (axis_rest - turn * angle))).with_sign(y)
+    let angle = (main + (lost + (axis_rest - turn * angle))).with_sign(y);
+    T::select(known, angle, T::zero())
 }
 
 /// Exponential function.

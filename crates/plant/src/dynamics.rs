@@ -100,21 +100,21 @@ impl<T: Real> Held<T> {
     }
 }
 
-/// The time derivative of the state, (1) to (4).
+/// The time derivative of the state under the rotors' `torque`, (1) to (4).
 #[inline(always)]
-pub fn derivative<T: Real>(
+fn derivative<T: Real>(
     state: &State<T>,
+    torque: Vec3<T, Body>,
     vehicle: &Vehicle<T>,
     actuation: &impl Actuate<T>,
     held: &Held<T>,
 ) -> Derivative<T> {
-    let torque = actuation.torque(state) + held.torque;
     let thrust = actuation.thrust_per_mass(state, vehicle);
     Derivative {
         position: state.velocity,                                            // (1)
         velocity: acceleration(thrust, held.push_per_mass, vehicle.gravity), // (2)
         attitude: spin(state),                                               // (3)
-        rate: angular_acceleration(state, held, torque),                     // (5)
+        rate: angular_acceleration(state, held, torque + held.torque),       // (5)
     }
 }
 
@@ -151,30 +151,37 @@ pub fn runge_kutta<T: Real>(
     actuation: &impl Actuate<T>,
     held: &Held<T>,
 ) -> State<T> {
-    let mut next = along_mean(state, h, vehicle, actuation, held);
+    let torque = actuation.torque(state);
+    let (mut next, _) = along_mean(state, torque, h, vehicle, actuation, held);
     next.attitude = next.attitude.renormalised();
     next
 }
 
-/// [`runge_kutta`] before the quaternion is normalised.
+/// [`runge_kutta`] before the quaternion is normalised, where the rotors' torque is `torque` in the
+/// beginning; also their torque in the end.
 #[inline(always)]
 pub fn along_mean<T: Real>(
     state: &State<T>,
+    torque: Vec3<T, Body>,
     h: T,
     vehicle: &Vehicle<T>,
     actuation: &impl Actuate<T>,
     held: &Held<T>,
-) -> State<T> {
+) -> (State<T>, Vec3<T, Body>) {
     let [half_way, end] = actuation.rotor_speeds(state);
-    let slope = |at: &State<T>| derivative(at, vehicle, actuation, held);
-    let k1 = slope(state);
-    let k2 = slope(&state.along(&k1, h.half(), half_way));
-    let k3 = slope(&state.along(&k2, h.half(), half_way));
-    let k4 = slope(&state.along(&k3, h, end));
+    let slope = |at: &State<T>, torque| derivative(at, torque, vehicle, actuation, held);
+    let k1 = slope(state, torque);
+    let second = state.along(&k1, h.half(), half_way);
+    let k2 = slope(&second, actuation.torque(&second));
+    let third = state.along(&k2, h.half(), half_way);
+    let k3 = slope(&third, actuation.torque(&third));
+    let fourth = state.along(&k3, h, end);
+    let last = actuation.torque(&fourth);
+    let k4 = slope(&fourth, last);
     let (two, six) = (T::lit(2.0), T::lit(6.0));
     let mut sum: Derivative<T> =
         record::Record::zip([&k1, &k2, &k3, &k4], &mut |[a, b, c, d]| (a + d) + (b + c) * two);
     // The velocities of the four stages are state.velocity and what the slopes before added to it.
     sum.position = state.velocity * six + (k1.velocity + k2.velocity + k3.velocity) * h;
-    state.along(&sum, h * T::lit(1.0 / 6.0), end)
+    (state.along(&sum, h * T::lit(1.0 / 6.0), end), last)
 }

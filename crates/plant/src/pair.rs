@@ -206,7 +206,9 @@ impl Real for Pair {
     }
     #[inline(always)]
     fn select(mask: PairMask, a: Self, b: Self) -> Self {
-        Self(bitor_m128d(bitand_m128d(mask.0, a.0), bitandnot_m128d(mask.0, b.0)))
+        // What tells them apart is known beforehand where both are constants.
+        let apart = bitxor_m128d(a.0, b.0);
+        Self(bitxor_m128d(bitand_m128d(mask.0, apart), b.0))
     }
     // The two instructions answer as a comparison and a selection do: the second number where either is NaN
     // or both are zero.

@@ -61,6 +61,12 @@ pub trait Actuate<T: Real>: Plain<T> {
     fn thrust_per_mass(&self, state: &State<T>, vehicle: &Vehicle<T>) -> Vec3<T, World>;
     /// The rotors' torque, in still air, N m.
     fn torque(&self, state: &State<T>) -> Vec3<T, Body>;
+    /// [`Actuate::torque`] in the state in which it was `before`, ahead of the last command and of what
+    /// [`Actuate::pass`] let pass: the same where the speeds of the rotors alone make it.
+    #[inline(always)]
+    fn torque_now(&self, _before: Vec3<T, Body>, state: &State<T>) -> Vec3<T, Body> {
+        self.torque(state)
+    }
     /// Total thrust along the body's up axis, in still air, N.
     fn thrust(&self, state: &State<T>) -> T;
     /// Rotor speeds at the middle and at the end of the step that `pass` was told of, rad/s.
@@ -116,20 +122,25 @@ macro_rules! dispatch_actuate {
                 } )+ }
             }
 
-            /// The state `h` seconds on, vehicle by vehicle, where nothing but pushes disturbs it.
+            /// The state `h` seconds on and the rotors' torque then, vehicle by vehicle, where nothing but
+            /// pushes disturbs it. `torque` is theirs before the last command.
             #[inline(always)]
-            pub fn step(&mut self, state: &State<T>, h: T, vehicle: &Vehicle<T>, held: &Held<T>) -> State<T> {
-                let mut next = *state;
+            pub fn step(&mut self, state: &State<T>, torque: Vec3<T, Body>, h: T, vehicle: &Vehicle<T>, held: &Held<T>) -> (State<T>, Vec3<T, Body>) {
+                let (mut next, mut last) = (*state, Vec3::zero());
                 match self { $( Self::$variant(all) => {
                     all.pass(h);
                     for i in 0..T::PARTS {
-                        along_mean(&state.pick(i), h.part(i), &vehicle.pick(i), &all.pick(i), &held.pick(i))
-                            .put(&mut next, i);
+                        let (one, state) = (all.pick(i), state.pick(i));
+                        let torque = one.torque_now(torque.pick(i), &state);
+                        let (moved, turned) =
+                            along_mean(&state, torque, h.part(i), &vehicle.pick(i), &one, &held.pick(i));
+                        moved.put(&mut next, i);
+                        turned.put(&mut last, i);
                     }
                 } )+ }
                 // All vehicles at once: only together can they pass by what none of them needs.
                 next.attitude = next.attitude.renormalised();
-                next
+                (next, last)
             }
         }
 

@@ -126,6 +126,10 @@ impl<T: Real> Actuate<T> for Rotors<T> {
         Vec3::new(dot(roll, squares), dot(pitch, squares), dot(yaw, squares)) // (3)
     }
     #[inline(always)]
+    fn torque_now(&self, before: Vec3<T, Body>, _: &State<T>) -> Vec3<T, Body> {
+        before
+    }
+    #[inline(always)]
     fn thrust(&self, state: &State<T>) -> T {
         sum(squares(state)) * self.thrust_coefficient // (3)
     }

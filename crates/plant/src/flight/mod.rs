@@ -172,6 +172,8 @@ record! {
         mass_ratio: T [1];
         /// The rotors' thrust per mass at the start of the tick.
         thrust_per_mass: Vec3<T, World> [m/s^2];
+        /// The rotors' torque in this state, in still air, before the next command.
+        rotor_torque: Vec3<T, Body> [N m];
         /// What the laws decided at the last tick, where commands may be late.
         decided: Command<T> [];
         /// Thrust per mass that was sent to the rotors at the last tick.
@@ -214,6 +216,7 @@ impl Flight<f64> {
         self.faults = RotorFaults::none();
         (self.alive, self.cause, self.flown) = (1.0, 0.0, 0.0);
         self.tick = 0;
+        self.rotor_torque = self.actuation.torque(&self.state);
         self.stack.reset(&self.measure());
         if self.sensing.estimate {
             let truth = self.truth();
@@ -226,7 +229,7 @@ impl<T: Real> Flight<T> {
     /// What the laws see: the true state, and the rotors as their model has them.
     #[inline(always)]
     fn measure(&self) -> Measurement<T> {
-        let Wrench { thrust, torque } = self.actuation.wrench(&self.state);
+        let (thrust, torque) = (self.actuation.thrust(&self.state), self.rotor_torque);
         let achieved = Wrench { thrust: thrust * self.belief, torque: torque * self.belief };
         let State { position, velocity, attitude, rate, .. } = &self.state;
         Measurement {
@@ -399,15 +402,10 @@ impl<T: Real> Flight<T> {
             let (conditions, steps) = (&self.conditions, self.substeps);
             let whole = world::advance(&whole, h, steps, vehicle, &mut self.actuation, conditions);
             self.hanging = whole.hanging;
+            self.rotor_torque = self.actuation.torque(&whole.body);
             same(&whole.body)
         } else {
-            let push = Push { force: tick.disturbance.force, torque: tick.disturbance.torque };
-            let held = Held::new(&self.per, &push);
-            let mut state = self.state;
-            for _ in 0..self.substeps {
-                state = self.actuation.step(&state, h, &self.vehicle, &held);
-            }
-            state
+            self.glide(h, &Push { force: tick.disturbance.force, torque: tick.disturbance.torque })
         };
         let steady = state.sum(|x| x).is_finite() & T::zero().lt(self.alive);
         if steady.all() {
@@ -419,12 +417,26 @@ impl<T: Real> Flight<T> {
         self.tick += 1;
     }
 
+    /// The state after the tick where nothing but this push disturbs, in steps of `h`.
+    #[inline(always)]
+    fn glide(&mut self, h: T, push: &Push<T>) -> State<T> {
+        let held = Held::new(&self.per, push);
+        let mut state = self.state;
+        let mut torque = self.rotor_torque;
+        for _ in 0..self.substeps {
+            (state, torque) = self.actuation.step(&state, torque, h, &self.vehicle, &held);
+        }
+        self.rotor_torque = torque;
+        state
+    }
+
     /// Moves only the flights that go on and whose state is finite.
     #[cold]
     #[inline(never)]
     fn settle(&mut self, state: &State<T>) {
         let finite = state.finite();
         self.state = blend(finite & T::zero().lt(self.alive), state, &self.state);
+        self.rotor_torque = self.actuation.torque(&self.state);
         self.fail(!finite, 4.0);
     }
 
