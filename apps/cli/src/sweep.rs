@@ -320,10 +320,10 @@ fn print(
     for (cause, count) in summary.failures() {
         terminal::say(&format!("  {count} failed: {}", cause.describe()));
     }
-    let rows = summary.correlations().into_iter().map(|c| {
+    let rows = summary.correlations().iter().map(|c| {
         // One of the two never changes: no correlation.
         let rank = if c.rank.is_finite() { format!("{:+.3}", c.rank) } else { "-".into() };
-        vec![c.input, c.with.to_owned(), rank, c.flights.to_string()]
+        vec![c.input.clone(), c.with.to_owned(), rank, c.flights.to_string()]
     });
     let table = Table {
         title: "What goes with what (Spearman's rank correlation)".into(),

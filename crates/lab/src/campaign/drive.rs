@@ -91,8 +91,7 @@ impl Drive<'_> {
             )));
         }
         let mut journal = Journal::open(self.disk, &path, &self.owner(), index.as_ref())?;
-        let tallies = index.as_ref().map(|index| index.tallies.clone()).unwrap_or_default();
-        let mut count = Count::new(self, tallies);
+        let mut count = Count::new(self, index.iter().flat_map(Index::tallies));
         let has = |chunk: &u64| index.as_ref().is_some_and(|index| index.has(*chunk));
         let waiting: Vec<u64> = self.chunks().filter(|chunk| !has(chunk)).collect();
         let enough = AtomicBool::new(count.enough());
@@ -234,7 +233,7 @@ struct Count {
 }
 
 impl Count {
-    fn new(drive: &Drive<'_>, tallies: BTreeMap<u64, Tally>) -> Self {
+    fn new(drive: &Drive<'_>, tallies: impl Iterator<Item = (u64, Tally)>) -> Self {
         let flights = drive.chunks().map(|chunk| {
             let rows = rows(drive.campaign, chunk);
             rows.end - rows.start

@@ -177,7 +177,7 @@ pub fn summary_json(campaign: &Campaign, summary: &Summary) -> Json {
         .collect();
     let correlations: Vec<Json> = summary
         .correlations()
-        .into_iter()
+        .iter()
         .map(|c| json!({ "input": c.input, "with": c.with, "rank": c.rank, "flights": c.flights }))
         .collect();
     let worst: Vec<Json> = summary

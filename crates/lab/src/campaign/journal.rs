@@ -7,7 +7,6 @@
 //! when the program died: it is cut off and flown again. Anything else that does not add up is damage,
 //! and is said.
 
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
@@ -116,7 +115,12 @@ fn decode(bytes: &[u8], metrics: usize) -> Vec<Entry> {
             .map(|cause| Failure { time: float(bytes, 1), cause: *cause }),
         metrics: (0..metrics).map(|i| float(bytes, 9 + 8 * i)).collect(),
     };
-    bytes.chunks_exact(9 + 8 * metrics).map(entry).collect()
+    bytes.chunks_exact(flight_size(metrics)).map(entry).collect()
+}
+
+/// Bytes of one flight.
+fn flight_size(metrics: usize) -> usize {
+    9 + 8 * metrics
 }
 
 /// Bytes that the journal takes for so many flights.
@@ -130,10 +134,18 @@ pub fn size(flights: u64, metrics: u64) -> u64 {
 pub struct Index {
     path: PathBuf,
     owner: Owner,
-    places: BTreeMap<u64, (u64, usize)>,
-    /// What each chunk came to.
-    pub tallies: BTreeMap<u64, Tally>,
+    /// In the order of their chunks.
+    records: Vec<Record>,
     end: u64,
+}
+
+/// Where a chunk stands, and what it came to. A long campaign has many of them.
+#[derive(Clone, Copy, Debug)]
+struct Record {
+    chunk: u64,
+    begin: u64,
+    size: u32,
+    good: u32,
 }
 
 /// A message about a journal that cannot be used.
@@ -169,9 +181,10 @@ impl Index {
         let Some(owner) = Owner::read(&header) else {
             return Err(damaged(path, 0, "the header does not have its checksum"));
         };
-        let (places, tallies) = (BTreeMap::new(), BTreeMap::new());
-        let mut index = Self { path: path.to_owned(), owner, places, tallies, end: HEADER as u64 };
+        let (path, records) = (path.to_owned(), Vec::new());
+        let mut index = Self { path, owner, records, end: HEADER as u64 };
         while index.read_record(&mut file, length)? {}
+        index.sort()?;
         Ok(Some(index))
     }
 
@@ -186,25 +199,57 @@ impl Index {
         if crc32fast::hash(&head[..12]) != u32_at(&head, 12) {
             return Err(damaged(&self.path, at, "a record's head does not have its checksum"));
         }
-        let (chunk, size) = (u64_at(&head, 0), u32_at(&head, 8) as usize);
+        let (chunk, size) = (u64_at(&head, 0), u32_at(&head, 8));
         let begin = at + HEAD as u64;
-        if length - begin < size as u64 + 4 {
+        if length - begin < u64::from(size) + 4 {
             return Ok(false);
         }
+        let mut record = Record { chunk, begin, size, good: 0 };
+        let entries = self.flights(&record, file)?;
+        record.good = entries.iter().map(|entry| u32::from(entry.failure.is_none())).sum();
+        self.records.push(record);
+        self.end = begin + u64::from(size) + 4;
+        Ok(true)
+    }
+
+    /// Brings the records into the order of their chunks, of which each must stand once.
+    fn sort(&mut self) -> io::Result<()> {
+        self.records.sort_unstable_by_key(|record| (record.chunk, record.begin));
+        let mut neighbours = self.records.iter().zip(self.records.iter().skip(1));
+        match neighbours.find(|(a, b)| a.chunk == b.chunk) {
+            Some((_, again)) => {
+                Err(damaged(&self.path, again.begin - HEAD as u64, "a chunk stands twice"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The flights of a record, at which `file` stands.
+    fn flights(&self, record: &Record, file: &mut impl Read) -> io::Result<Vec<Entry>> {
+        let size = record.size as usize;
         let mut payload = vec![0; size + 4];
         file.read_exact(&mut payload)?;
         if crc32fast::hash(&payload[..size]) != u32_at(&payload, size) {
-            return Err(damaged(&self.path, begin, "flights do not have their checksum"));
+            return Err(damaged(&self.path, record.begin, "flights do not have their checksum"));
         }
-        let metrics = usize::try_from(self.owner.metrics).unwrap_or(usize::MAX);
-        let entries = decode(&payload[..size], metrics);
-        let good = entries.iter().filter(|entry| entry.failure.is_none()).count() as u64;
-        if self.places.insert(chunk, (begin, size)).is_some() {
-            return Err(damaged(&self.path, at, "a chunk stands twice"));
-        }
-        self.tallies.insert(chunk, Tally { flown: entries.len() as u64, good });
-        self.end = begin + size as u64 + 4;
-        Ok(true)
+        Ok(decode(&payload[..size], self.metrics()))
+    }
+
+    fn metrics(&self) -> usize {
+        usize::try_from(self.owner.metrics).unwrap_or(usize::MAX)
+    }
+
+    fn find(&self, chunk: u64) -> Option<&Record> {
+        let at = self.records.binary_search_by_key(&chunk, |record| record.chunk).ok()?;
+        self.records.get(at)
+    }
+
+    /// The chunks in their order, and what each came to.
+    pub fn tallies(&self) -> impl Iterator<Item = (u64, Tally)> {
+        let flown = |record: &Record| u64::from(record.size) / flight_size(self.metrics()) as u64;
+        self.records.iter().map(move |record| {
+            (record.chunk, Tally { flown: flown(record), good: u64::from(record.good) })
+        })
     }
 
     /// What the journal belongs to.
@@ -214,7 +259,7 @@ impl Index {
 
     /// Whether the chunk is in it.
     pub fn has(&self, chunk: u64) -> bool {
-        self.places.contains_key(&chunk)
+        self.find(chunk).is_some()
     }
 
     /// The flights of a chunk; `None` where it is not in the journal.
@@ -222,16 +267,10 @@ impl Index {
     /// # Errors
     /// Where it cannot be read any more, or has changed since.
     pub fn chunk(&self, chunk: u64) -> io::Result<Option<Vec<Entry>>> {
-        let Some((begin, size)) = self.places.get(&chunk) else { return Ok(None) };
+        let Some(record) = self.find(chunk) else { return Ok(None) };
         let mut file = File::open(&self.path)?;
-        file.seek(SeekFrom::Start(*begin))?;
-        let mut payload = vec![0; size + 4];
-        file.read_exact(&mut payload)?;
-        if crc32fast::hash(&payload[..*size]) != u32_at(&payload, *size) {
-            return Err(damaged(&self.path, *begin, "flights do not have their checksum"));
-        }
-        let metrics = usize::try_from(self.owner.metrics).unwrap_or(usize::MAX);
-        Ok(Some(decode(&payload[..*size], metrics)))
+        file.seek(SeekFrom::Start(record.begin))?;
+        self.flights(record, &mut file).map(Some)
     }
 }
 

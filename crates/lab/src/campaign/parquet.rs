@@ -11,18 +11,22 @@ use ::parquet::basic::{Encoding, LogicalType, Repetition, Type as Physical};
 use ::parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use ::parquet::errors::ParquetError;
 use ::parquet::file::metadata::KeyValue;
-use ::parquet::file::properties::{WriterProperties, WriterPropertiesPtr};
-use ::parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use ::parquet::file::properties::{EnabledStatistics, WriterProperties, WriterPropertiesPtr};
+use ::parquet::file::writer::{
+    SerializedColumnWriter, SerializedFileWriter, SerializedRowGroupWriter,
+};
 use ::parquet::schema::types::{ColumnPath, Type, TypePtr};
 
 use super::result::{Columns, Input, Row};
 
 /// Flights in one row group: what is held in memory before it is written.
-pub const GROUP: usize = 65_536;
+pub const GROUP: usize = 16_384;
+/// Flights that are handed over at once.
+const BATCH: usize = 1024;
 /// Named in the file in place of the library and its version, which would change the bytes.
 const CREATED_BY: &str = "stormpetrel";
 
-/// Writes flights into a Parquet file; holds at most one row group, 65,536 flights, in memory.
+/// Writes flights into a Parquet file; holds at most one row group, 16,384 flights, in memory.
 #[derive(Debug)]
 pub struct Writer<W: Write + Send> {
     /// Present until the first row group tells the type of each input.
@@ -46,10 +50,10 @@ enum Values {
     Count(Vec<i64>),
     /// Never null.
     Number(Vec<f64>),
-    /// Never null.
-    Text(Vec<ByteArray>),
-    /// What is present, and for every row whether it is.
-    Optional(Vec<f64>, Vec<i16>),
+    /// Never null. Each text once, and for every row which.
+    Text(Vec<ByteArray>, Vec<usize>),
+    /// NaN stands for null.
+    Optional(Vec<f64>),
     /// An input of which no value has been seen.
     Unknown,
 }
@@ -140,11 +144,11 @@ enum Cell<'a> {
 /// The columns of a file, empty.
 fn table(columns: &Columns) -> Vec<Column> {
     let column = |name: &str, values| Column { name: name.to_owned(), values };
-    let optional = || Values::Optional(Vec::new(), Vec::new());
+    let optional = || Values::Optional(Vec::new());
     let mut all =
         vec![column("index", Values::Count(Vec::new())), column("seed", Values::Count(Vec::new()))];
     all.extend(columns.inputs.iter().map(|n| column(&format!("input.{n}"), Values::Unknown)));
-    all.push(column("outcome", Values::Text(Vec::new())));
+    all.push(column("outcome", Values::Text(Vec::new(), Vec::new())));
     all.push(column("failure.time", optional()));
     all.extend(columns.metrics.iter().map(|name| column(name, optional())));
     all
@@ -167,18 +171,20 @@ impl Column {
     fn push(&mut self, cell: Cell<'_>) -> io::Result<()> {
         if let Values::Unknown = self.values {
             self.values = match cell {
-                Cell::Text(_) => Values::Text(Vec::new()),
+                Cell::Text(_) => Values::Text(Vec::new(), Vec::new()),
                 _ => Values::Number(Vec::new()),
             };
         }
         match (&mut self.values, cell) {
             (Values::Count(values), Cell::Count(n)) => values.push(n.cast_signed()),
-            (Values::Number(values), Cell::Number(x)) => values.push(x),
-            (Values::Text(values), Cell::Text(text)) => values.push(text.into()),
-            (Values::Optional(_, present), Cell::Optional(x)) if x.is_nan() => present.push(0),
-            (Values::Optional(values, present), Cell::Optional(x)) => {
-                values.push(x);
-                present.push(1);
+            (Values::Number(values), Cell::Number(x))
+            | (Values::Optional(values), Cell::Optional(x)) => values.push(x),
+            (Values::Text(texts, values), Cell::Text(text)) => {
+                let known = texts.iter().position(|one| one.data() == text.as_bytes());
+                values.push(known.unwrap_or_else(|| {
+                    texts.push(text.into());
+                    texts.len() - 1
+                }));
             }
             _ => return Err(misfit(format!("column {} mixes text and numbers", self.name))),
         }
@@ -192,7 +198,7 @@ impl Column {
                 let unsigned = LogicalType::integer(64, false);
                 (Physical::INT64, Some(unsigned), Repetition::REQUIRED)
             }
-            Values::Text(_) => {
+            Values::Text(..) => {
                 (Physical::BYTE_ARRAY, Some(LogicalType::String), Repetition::REQUIRED)
             }
             Values::Optional(..) => (Physical::DOUBLE, None, Repetition::OPTIONAL),
@@ -211,31 +217,38 @@ impl Values {
         &mut self,
         group: &mut SerializedRowGroupWriter<'_, W>,
     ) -> Result<(), ParquetError> {
+        let Some(mut column) = group.next_column()? else {
+            return Err(ParquetError::General("more columns than the schema has".into()));
+        };
         match self {
-            Self::Count(values) => write::<Int64Type, W>(group, values, None),
-            Self::Number(values) => write::<DoubleType, W>(group, values, None),
-            Self::Text(values) => write::<ByteArrayType, W>(group, values, None),
-            Self::Optional(values, present) => {
-                write::<DoubleType, W>(group, values, Some(present))?;
-                present.clear();
-                Ok(())
+            Self::Count(values) => write::<Int64Type, _>(&mut column, values, |n| Some(*n)),
+            Self::Number(values) => write::<DoubleType, _>(&mut column, values, |x| Some(*x)),
+            Self::Text(texts, values) => {
+                write::<ByteArrayType, _>(&mut column, values, |at| texts.get(*at).cloned())
+            }
+            Self::Optional(values) => {
+                write::<DoubleType, _>(&mut column, values, |x| (!x.is_nan()).then_some(*x))
             }
             Self::Unknown => Ok(()),
-        }
+        }?;
+        column.close()
     }
 }
 
-fn write<D: DataType, W: Write + Send>(
-    group: &mut SerializedRowGroupWriter<'_, W>,
-    values: &mut Vec<D::T>,
-    present: Option<&[i16]>,
+/// Writes what `value` makes of each of these, null where it makes nothing, and forgets them.
+fn write<D: DataType, R>(
+    column: &mut SerializedColumnWriter<'_>,
+    rows: &mut Vec<R>,
+    value: impl Fn(&R) -> Option<D::T>,
 ) -> Result<(), ParquetError> {
-    let Some(mut column) = group.next_column()? else {
-        return Err(ParquetError::General("more columns than the schema has".into()));
-    };
-    column.typed::<D>().write_batch(values, present, None)?;
-    values.clear();
-    column.close()
+    for batch in rows.chunks(BATCH) {
+        let values: Vec<Option<D::T>> = batch.iter().map(&value).collect();
+        let present: Vec<i16> = values.iter().map(|x| i16::from(x.is_some())).collect();
+        let values: Vec<D::T> = values.into_iter().flatten().collect();
+        column.typed::<D>().write_batch(&values, Some(&present), None)?;
+    }
+    rows.clear();
+    Ok(())
 }
 
 fn schema(columns: &[Column]) -> Result<TypePtr, ParquetError> {
@@ -244,10 +257,14 @@ fn schema(columns: &[Column]) -> Result<TypePtr, ParquetError> {
     Ok(Arc::new(Type::group_type_builder("flights").with_fields(fields).build()?))
 }
 
-/// Measured numbers hardly repeat, so a dictionary is kept for inputs and texts alone.
+/// Measured numbers hardly repeat, so a dictionary is kept for inputs and texts alone. Bounds of each row
+/// group would not help a search, as flights come in no order of their values; they would only have to be
+/// kept in memory until the end.
 fn properties(columns: &[Column], about: Vec<KeyValue>) -> WriterPropertiesPtr {
     let mut properties = WriterProperties::builder()
         .set_created_by(CREATED_BY.to_owned())
+        .set_statistics_enabled(EnabledStatistics::None)
+        .set_offset_index_disabled(true)
         .set_key_value_metadata((!about.is_empty()).then_some(about))
         .set_max_row_group_row_count(Some(GROUP));
     for column in columns {

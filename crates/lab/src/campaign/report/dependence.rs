@@ -8,9 +8,9 @@ use crate::campaign::summary::{Correlation, SCORE, Summary, wilson};
 use crate::page::{self, escape, number};
 
 /// The inputs that matter most first, with their correlations.
-fn by_strength(summary: &Summary) -> Vec<Vec<Correlation>> {
-    let all = summary.correlations();
-    let mut groups: Vec<_> = all.chunk_by(|a, b| a.input == b.input).map(<[_]>::to_vec).collect();
+fn by_strength(summary: &Summary) -> Vec<&[Correlation]> {
+    let mut groups: Vec<&[_]> =
+        summary.correlations().chunk_by(|a, b| a.input == b.input).collect();
     let strength = |group: &[Correlation]| {
         let ranks = group.iter().map(|c| c.rank.abs()).filter(|rank| rank.is_finite());
         ranks.fold(0.0, |a, b| if b > a { b } else { a })

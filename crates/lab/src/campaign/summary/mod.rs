@@ -8,6 +8,7 @@ mod rank;
 mod sample;
 mod wilson;
 
+use std::cell::OnceCell;
 use std::cmp::Ordering;
 
 use stormpetrel_plant::flight::Cause;
@@ -26,16 +27,21 @@ pub const KEY_METRICS: [&str; 3] = [SCORE, "position.max", "attitude.angle.iae"]
 /// Name of a correlation with whether the flight was flown to its end.
 pub const SUCCESS: &str = "success";
 
-/// What is known of a campaign so far.
+/// What is known of a campaign so far. Of the flights that are kept, only the [`KEY_METRICS`] are.
 #[derive(Clone, Debug)]
 pub struct Summary {
+    /// What is kept of a flight.
     columns: Columns,
+    /// Where the kept metrics stand in a flight.
+    places: Vec<usize>,
     score: Option<usize>,
     flights: u64,
     failures: Vec<(Cause, u64)>,
     room: usize,
     worst: Vec<Row>,
     sample: Sample,
+    /// Once someone has asked.
+    correlations: OnceCell<Vec<Correlation>>,
 }
 
 /// How the order of one quantity goes with the order of another.
@@ -52,16 +58,22 @@ pub struct Correlation {
 }
 
 impl Summary {
-    /// Nothing flown yet; the `worst` worst flights will be kept.
+    /// Nothing flown yet, of flights with these columns; the `worst` worst ones will be kept.
     pub fn new(columns: &Columns, worst: usize) -> Self {
+        let all = &columns.metrics;
+        let find = |name: &str| all.iter().position(|known| known == name);
+        let places: Vec<usize> = KEY_METRICS.into_iter().filter_map(find).collect();
+        let metrics: Vec<String> = places.iter().map(|at| all[*at].clone()).collect();
         Self {
-            columns: columns.clone(),
-            score: columns.metrics.iter().position(|name| name == SCORE),
+            score: metrics.iter().position(|name| name == SCORE),
+            columns: Columns { inputs: columns.inputs.clone(), metrics },
+            places,
             flights: 0,
             failures: Vec::new(),
             room: worst,
             worst: Vec::with_capacity(worst + 1),
             sample: Sample::new(SAMPLE),
+            correlations: OnceCell::new(),
         }
     }
 
@@ -74,8 +86,11 @@ impl Summary {
                 None => self.failures.push((failure.cause, 1)),
             }
         }
-        self.keep_if_bad(row);
+        let metrics = self.places.iter().filter_map(|at| row.metrics.get(*at).copied());
+        let row = Row { metrics: metrics.collect(), inputs: row.inputs.clone(), ..*row };
+        self.keep_if_bad(&row);
         self.sample.push(row);
+        self.correlations.take();
     }
 
     fn keep_if_bad(&mut self, row: &Row) {
@@ -103,7 +118,7 @@ impl Summary {
         score.filter(|score| !score.is_nan()).unwrap_or(f64::NEG_INFINITY)
     }
 
-    /// The columns of the rows.
+    /// The columns of the rows that are kept.
     pub fn columns(&self) -> &Columns {
         &self.columns
     }
@@ -182,7 +197,11 @@ impl Summary {
 
     /// Rank correlation of each numeric input with each of the [`KEY_METRICS`] that the flights have
     /// (over the sampled flights that were flown to their end) and with success (over all sampled).
-    pub fn correlations(&self) -> Vec<Correlation> {
+    pub fn correlations(&self) -> &[Correlation] {
+        self.correlations.get_or_init(|| self.correlate())
+    }
+
+    fn correlate(&self) -> Vec<Correlation> {
         let mut all = Vec::new();
         for (at, input) in self.numeric_inputs() {
             let mut add = |with, pairs: &[(f64, f64)]| {
@@ -202,7 +221,7 @@ impl Summary {
         all
     }
 
-    /// Whether the flights have the metric.
+    /// Whether the metric is kept.
     pub fn has(&self, metric: &str) -> bool {
         self.columns.metrics.iter().any(|name| name == metric)
     }

@@ -22,7 +22,7 @@ impl Sample {
         Self { room, every: 1, rows: Vec::new() }
     }
 
-    pub fn push(&mut self, row: &Row) {
+    pub fn push(&mut self, row: Row) {
         if !kept(row.index, self.every) {
             return;
         }
@@ -32,7 +32,7 @@ impl Sample {
             self.rows.retain(|row| kept(row.index, every));
         }
         if kept(row.index, self.every) {
-            self.rows.push(row.clone());
+            self.rows.push(row);
         }
     }
 
@@ -68,7 +68,7 @@ mod tests {
     fn indices(room: usize, pushed: impl Iterator<Item = u64>) -> (u64, Vec<u64>) {
         let mut sample = Sample::new(room);
         for index in pushed {
-            sample.push(&Row { index, seed: 0, inputs: vec![], failure: None, metrics: vec![] });
+            sample.push(Row { index, seed: 0, inputs: vec![], failure: None, metrics: vec![] });
         }
         (sample.every, sample.rows.iter().map(|row| row.index).collect())
     }

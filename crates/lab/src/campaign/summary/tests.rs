@@ -78,7 +78,8 @@ fn correlations_are_of_numbers_and_leave_cut_off_flights_out() {
     let mut rows: Vec<Row> = (0..8).map(|i| row(i, i as f64, (i * i) as f64)).collect();
     // Its score is small because it ended early: counted, it would spoil the order.
     rows.push(failed(8, 1.0, Cause::Tilt));
-    let found = summary(&rows, 0).correlations();
+    let summary = summary(&rows, 0);
+    let found = summary.correlations();
     let named: Vec<_> = found.iter().map(|c| (c.input.as_str(), c.with, c.flights)).collect();
     assert_eq!(
         named,
@@ -89,6 +90,20 @@ fn correlations_are_of_numbers_and_leave_cut_off_flights_out() {
     for (rank, wanted) in ranks.iter().zip([1.0, -1.0, -18.0 / (60.0_f64 * 18.0).sqrt()]) {
         assert!((rank - wanted).abs() < 1e-14, "{rank} {wanted}");
     }
+}
+
+#[test]
+fn of_a_flight_only_the_key_metrics_are_kept() {
+    let metrics = ["tilt.max", "position.max", "control.effort", "position.iae"];
+    let columns = Columns { metrics: metrics.map(String::from).to_vec(), ..columns() };
+    let mut summary = Summary::new(&columns, 2);
+    for (index, score) in [(0, 3.0), (1, 4.0)] {
+        summary.push(&Row { metrics: vec![9.0, 2.0 * score, 8.0, score], ..row(index, 1.0, 0.0) });
+    }
+    assert_eq!(summary.columns().metrics, ["position.iae", "position.max"]);
+    assert_eq!(summary.worst()[0].metrics, [4.0, 8.0]);
+    assert_eq!(summary.sample()[0].metrics, [3.0, 6.0]);
+    assert_eq!(summary.metric("position.max").map(|(_, x)| x).collect::<Vec<_>>(), [6.0, 8.0]);
 }
 
 #[test]
