@@ -200,7 +200,7 @@ pub fn asin<T: Real>(x: T) -> T {
 #[inline(always)]
 pub fn atan2<T: Real>(y: T, x: T) -> T {
     let known = x.eq(x) & y.eq(y);
-    // The smaller of the two is a number, also where the other is none.
+    // `min` gives its argument where it is asked of NaN: what follows stays finite, and is not used then.
     let (across, up) = (x.abs().min(largest()), y.abs().min(largest()));
     let steep = across.lt(up);
     let (long, short) = (across.max(up), across.min(up));
