@@ -30,7 +30,7 @@ pub struct Failure {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// Metrics by flat name, in a fixed order.
-    pub metrics: Vec<(String, f64)>,
+    pub metrics: Vec<(&'static str, f64)>,
     /// Present where the flight failed.
     pub failure: Option<Failure>,
 }
@@ -38,7 +38,7 @@ pub struct Outcome {
 impl Outcome {
     /// The metric of that name.
     pub fn get(&self, name: &str) -> Option<f64> {
-        self.metrics.iter().find(|(known, _)| known == name).map(|(_, value)| *value)
+        self.metrics.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
     }
 }
 

@@ -6,6 +6,8 @@
 //!   max >= |e|, late maximum: the same from `run.late` on                (3)
 //! so that `max * IAE >= ISE >= IAE^2/T` for every flight (theory 1.3), which is asserted.
 
+use std::sync::LazyLock;
+
 use stormpetrel_control::attitude::euler::difference;
 use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::Real;
@@ -359,12 +361,14 @@ pub const OF_FLIGHT: [About; 12] = [
     },
 ];
 
-/// The flat name of every metric that a flight can have.
-pub fn names() -> Vec<String> {
-    let of = |signal: &About| OF_SIGNALS.map(|metric| metric.name.replace('*', signal.name));
-    let mut names: Vec<String> = SIGNALS.iter().flat_map(of).collect();
-    names.extend(OF_FLIGHT.map(|metric| metric.name.to_owned()));
-    names
+/// The flat name of every metric that a flight can have: those of each signal, then those of the flight.
+pub fn names() -> &'static [String] {
+    static NAMES: LazyLock<Vec<String>> = LazyLock::new(|| {
+        let of = |signal: &About| OF_SIGNALS.map(|metric| metric.name.replace('*', signal.name));
+        let of_flight = OF_FLIGHT.map(|metric| metric.name.to_owned());
+        SIGNALS.iter().flat_map(of).chain(of_flight).collect()
+    });
+    &NAMES
 }
 
 /// Unit and definition of the metric of that flat name; empty for an unknown one.
@@ -444,9 +448,10 @@ impl Distribution {
     }
 }
 
-/// All metrics of a flight under their flat names, in a fixed order.
-pub fn metrics(sums: &Sums<f64>, distribution: &Distribution) -> Vec<(String, f64)> {
-    let mut all = Vec::with_capacity(80);
+/// All metrics of a flight under their flat names, in the order of [`names`].
+pub fn metrics(sums: &Sums<f64>, distribution: &Distribution) -> Vec<(&'static str, f64)> {
+    let mut names = names().iter();
+    let mut all = Vec::with_capacity(names.len());
     let time = sums.time;
     let signals = [
         sums.position,
@@ -463,9 +468,9 @@ pub fn metrics(sums: &Sums<f64>, distribution: &Distribution) -> Vec<(String, f6
         assert_possible(about.name, &integrals, time);
         let rmse = if time > 0.0 { (ise / time).sqrt() } else { 0.0 };
         let values = [iae, ise, itae, rmse, max, late_max, histogram.p95()];
-        for (of, value) in OF_SIGNALS.iter().zip(values) {
+        for ((of, value), name) in OF_SIGNALS.iter().zip(values).zip(names.by_ref()) {
             if !(of.name == "*.late_max" && value < 0.0) {
-                all.push((of.name.replace('*', about.name), value));
+                all.push((name.as_str(), value));
             }
         }
     }
@@ -487,7 +492,7 @@ pub fn metrics(sums: &Sums<f64>, distribution: &Distribution) -> Vec<(String, f6
     ];
     for (about, value) in OF_FLIGHT.iter().zip(values) {
         if !(about.name == "tilt.inverted_at" && value < 0.0) {
-            all.push((about.name.to_owned(), value));
+            all.push((about.name, value));
         }
     }
     all

@@ -39,7 +39,7 @@ pub fn metrics_json(outcome: &Outcome, spread: Option<&Spread>) -> Value {
     for (name, value) in &outcome.metrics {
         match spread.and_then(|spread| spread.range(name)) {
             None => {
-                all.insert(name.clone(), json!(value));
+                all.insert((*name).to_owned(), json!(value));
             }
             Some(range) => {
                 all.insert(format!("{name}.median"), json!(range.median));

@@ -125,7 +125,7 @@ mod tests {
     #[test]
     fn a_flight_fails_with_the_starts_beside_it() {
         let fell = Failure { time: 0.5, cause: Cause::PositionError };
-        let flown = |rms: f64, failure| Outcome { metrics: vec![("rms".into(), rms)], failure };
+        let flown = |rms: f64, failure| Outcome { metrics: vec![("rms", rms)], failure };
         let spread = Spread {
             outcomes: vec![flown(1.0, None), flown(f64::NAN, Some(fell)), flown(3.0, None)],
         };

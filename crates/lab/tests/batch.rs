@@ -69,10 +69,10 @@ fn worldly() -> Vec<Scenario> {
     (0..12).map(one).collect()
 }
 
-fn bits(outcome: &Outcome) -> Vec<(String, u64)> {
+fn bits(outcome: &Outcome) -> Vec<(&str, u64)> {
     let failure = outcome.failure.map_or(-1.0, |failure| failure.time);
-    let named = outcome.metrics.iter().map(|(name, value)| (name.clone(), value.to_bits()));
-    named.chain([("failure".to_owned(), failure.to_bits())]).collect()
+    let named = outcome.metrics.iter().map(|(name, value)| (*name, value.to_bits()));
+    named.chain([("failure", failure.to_bits())]).collect()
 }
 
 #[test]

@@ -4,11 +4,11 @@
 #![allow(clippy::expect_used, clippy::print_stdout)] // a test fails by panicking, and prints its figures
 
 use std::fs;
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use stormpetrel_lab::campaign::disk::{Disk, Native, Sink};
+use stormpetrel_lab::campaign::disk::{Disk, Native, Scratch, Sink};
 use stormpetrel_lab::campaign::drive::{Drive, End, JOURNAL};
 use stormpetrel_lab::campaign::files;
 use stormpetrel_lab::campaign::journal::Index;
@@ -210,7 +210,7 @@ impl Faulty {
     }
     fn wrap(&self, file: Box<dyn Sink>) -> Box<dyn Sink> {
         let disk = Self { done: self.done.clone(), ..*self };
-        Box::new(FaultyFile { file, disk })
+        Box::new(FaultyFile { disk, file })
     }
 }
 
@@ -227,14 +227,19 @@ impl Disk for Faulty {
         self.next()?;
         Native.rename(from, to)
     }
+    fn scratch(&self, folder: &Path) -> io::Result<Box<dyn Scratch>> {
+        self.next()?;
+        let disk = Self { done: self.done.clone(), ..*self };
+        Ok(Box::new(FaultyFile { disk, file: Native.scratch(folder)? }))
+    }
 }
 
-struct FaultyFile {
-    file: Box<dyn Sink>,
+struct FaultyFile<F: ?Sized> {
     disk: Faulty,
+    file: Box<F>,
 }
 
-impl Write for FaultyFile {
+impl<F: Write + ?Sized> Write for FaultyFile<F> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let failed = self.disk.next();
         if failed.is_err() && self.disk.kind == Break::Short {
@@ -250,7 +255,21 @@ impl Write for FaultyFile {
     }
 }
 
-impl Sink for FaultyFile {
+impl<F: Read + ?Sized> Read for FaultyFile<F> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.disk.next()?;
+        self.file.read(bytes)
+    }
+}
+
+impl<F: Seek + ?Sized> Seek for FaultyFile<F> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.disk.next()?;
+        self.file.seek(to)
+    }
+}
+
+impl Sink for FaultyFile<dyn Sink> {
     fn sync(&mut self) -> io::Result<()> {
         self.disk.next()?;
         self.file.sync()

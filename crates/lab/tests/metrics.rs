@@ -20,7 +20,7 @@ fn over(ticks: u32, tick: impl Fn(f64, Tick<f64>) -> Tick<f64>) -> impl Fn(&str)
         distribution.push(&sums.push(&tick, &SETTING, 1.0));
     }
     let all = metrics(&sums, &distribution);
-    move |name| all.iter().find(|(known, _)| known == name).unwrap_or_else(|| panic!("{name}")).1
+    move |name| all.iter().find(|(known, _)| *known == name).unwrap_or_else(|| panic!("{name}")).1
 }
 
 fn close(value: f64, expected: f64, relative: f64) {
@@ -119,8 +119,8 @@ fn nothing_counts_after_a_flight_has_failed() {
     tick.time = DT;
     sums.push(&tick, &SETTING, 0.0);
     let all = metrics(&sums, &Distribution::new(true));
-    assert!(all.contains(&("position.max".to_owned(), 1.0)));
-    assert!(all.contains(&("time.flown".to_owned(), DT)));
+    assert!(all.contains(&("position.max", 1.0)));
+    assert!(all.contains(&("time.flown", DT)));
 }
 
 /// Error signals of a whole flight, tick by tick, and its metrics as summed on line.

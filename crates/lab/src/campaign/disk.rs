@@ -1,7 +1,7 @@
 //! The file operations of a campaign, behind a trait so that every one of them can be made to fail.
 
 use std::fs::{File, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, Write};
 use std::path::Path;
 
 /// What a campaign asks of the file system.
@@ -21,6 +21,12 @@ pub trait Disk: Sync {
     /// # Errors
     /// Those of the system.
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
+    /// A nameless empty file on the medium of `folder`, gone with its owner.
+    ///
+    /// # Errors
+    /// Those of the system.
+    #[cfg(feature = "parquet")]
+    fn scratch(&self, folder: &Path) -> io::Result<Box<dyn Scratch>>;
 }
 
 /// A file open for writing.
@@ -31,6 +37,11 @@ pub trait Sink: Write + Send {
     /// Those of the system.
     fn sync(&mut self) -> io::Result<()>;
 }
+
+/// A file for what does not fit in memory.
+pub trait Scratch: Read + Write + Seek + Send {}
+
+impl<F: Read + Write + Seek + Send> Scratch for F {}
 
 /// The file system of this machine.
 #[derive(Clone, Copy, Debug, Default)]
@@ -54,6 +65,10 @@ impl Disk for Native {
                 .sync_all()?;
         }
         Ok(())
+    }
+    #[cfg(feature = "parquet")]
+    fn scratch(&self, folder: &Path) -> io::Result<Box<dyn Scratch>> {
+        Ok(Box::new(tempfile::tempfile_in(folder)?))
     }
 }
 

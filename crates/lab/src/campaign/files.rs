@@ -127,7 +127,8 @@ pub fn finish(
     let mut summary = Summary::new(&campaign.columns(), WORST);
     replace(disk, &folder.join(RESULTS), |file| {
         let about = [("campaign".to_owned(), campaign.identity().to_string())];
-        let mut writer = Writer::new(Pass(file), &campaign.columns(), &about);
+        let scratch = disk.scratch(folder)?;
+        let mut writer = Writer::new(Pass(file), scratch, &campaign.columns(), &about);
         each_row(campaign, parts, flights, &mut |row| {
             summary.push(row);
             writer.push(row)

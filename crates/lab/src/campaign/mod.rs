@@ -15,6 +15,8 @@ pub mod random;
 mod replay;
 pub mod report;
 pub mod result;
+#[cfg(feature = "parquet")]
+mod spool;
 pub mod summary;
 pub mod sweep;
 mod units;

@@ -4,7 +4,7 @@
 //! flat names. A metric that a flight does not have is null. The bytes depend on the rows and on
 //! nothing else: no clock, no version of a library.
 
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, Write};
 use std::sync::Arc;
 
 use ::parquet::basic::{Encoding, LogicalType, Repetition, Type as Physical};
@@ -18,57 +18,62 @@ use ::parquet::file::writer::{
 use ::parquet::schema::types::{ColumnPath, Type, TypePtr};
 
 use super::result::{Columns, Input, Row};
+use super::spool::Spool;
 
-/// Flights in one row group: what is held in memory before it is written.
-pub const GROUP: usize = 16_384;
-/// Flights that are handed over at once.
-const BATCH: usize = 1024;
+/// Flights in one row group. What a group takes in the foot of the file stays in memory until the end, so
+/// there should be few of them.
+pub const GROUP: usize = 131_072;
+/// Bytes of the distinct values of a column in a group, beyond which they are not gathered any more.
+const DICTIONARY: usize = 1 << 16;
 /// Named in the file in place of the library and its version, which would change the bytes.
 const CREATED_BY: &str = "stormpetrel";
 
-/// Writes flights into a Parquet file; holds at most one row group, 16,384 flights, in memory.
+/// Writes flights into a Parquet file. The row group in the making is in a file `F`, a page of it in
+/// memory.
 #[derive(Debug)]
-pub struct Writer<W: Write + Send> {
+pub struct Writer<W: Write + Send, F> {
     /// Present until the first row group tells the type of each input.
     out: Option<W>,
     file: Option<SerializedFileWriter<W>>,
     about: Vec<KeyValue>,
-    rows: usize,
     columns: Vec<Column>,
+    rows: Spool<F>,
 }
 
-/// A column of the row group in the making.
+/// A column of the file.
 #[derive(Debug)]
 struct Column {
     name: String,
-    values: Values,
+    kind: Kind,
 }
 
+/// What the words of a column are.
 #[derive(Debug)]
-enum Values {
+enum Kind {
     /// Never null, unsigned.
-    Count(Vec<i64>),
+    Count,
     /// Never null.
-    Number(Vec<f64>),
-    /// Never null. Each text once, and for every row which.
-    Text(Vec<ByteArray>, Vec<usize>),
+    Number,
+    /// Never null: which of these texts.
+    Text(Vec<ByteArray>),
     /// NaN stands for null.
-    Optional(Vec<f64>),
+    Optional,
     /// An input of which no value has been seen.
     Unknown,
 }
 
-impl<W: Write + Send> Writer<W> {
-    /// Begins a file; `about` is kept in it as key-value metadata. Nothing is written before the first
-    /// row group is full.
-    pub fn new(out: W, columns: &Columns, about: &[(String, String)]) -> Self {
+impl<W: Write + Send, F: Read + Write + Seek> Writer<W, F> {
+    /// Begins a file; `about` is kept in it as key-value metadata. Nothing is written to `out` before the
+    /// first row group is full; `scratch` is empty and used by nobody else.
+    pub fn new(out: W, scratch: F, columns: &Columns, about: &[(String, String)]) -> Self {
         let about = about.iter().map(|(key, value)| KeyValue::new(key.clone(), value.clone()));
+        let columns = table(columns);
         Self {
             out: Some(out),
             file: None,
             about: about.collect(),
-            rows: 0,
-            columns: table(columns),
+            rows: Spool::new(scratch, columns.len()),
+            columns,
         }
     }
 
@@ -87,11 +92,9 @@ impl<W: Write + Send> Writer<W> {
                 self.columns.len()
             )));
         }
-        for (column, cell) in self.columns.iter_mut().zip(cells) {
-            column.push(cell)?;
-        }
-        self.rows += 1;
-        if self.rows == GROUP { self.flush() } else { Ok(()) }
+        let words = self.columns.iter_mut().zip(cells).map(|(column, cell)| column.word(cell));
+        self.rows.push(words.collect::<io::Result<Vec<_>>>()?)?;
+        if self.rows.rows() == GROUP { self.flush() } else { Ok(()) }
     }
 
     /// Writes the rest and the foot of the file, and gives back what it was written to.
@@ -100,7 +103,7 @@ impl<W: Write + Send> Writer<W> {
     /// Where the file cannot be written.
     pub fn finish(mut self) -> io::Result<W> {
         // A file without rows has its columns all the same.
-        if self.rows > 0 || self.file.is_none() {
+        if self.rows.rows() > 0 || self.file.is_none() {
             self.flush()?;
         }
         let file = self.file.ok_or_else(|| io::Error::other("no file"))?;
@@ -121,14 +124,14 @@ impl<W: Write + Send> Writer<W> {
             self.file = Some(file.map_err(failed)?);
         }
         let file = self.file.as_mut().ok_or_else(|| io::Error::other("no file"))?;
-        if self.rows > 0 {
+        if self.rows.rows() > 0 {
             let mut group = file.next_row_group().map_err(failed)?;
-            for column in &mut self.columns {
-                column.values.write(&mut group).map_err(failed)?;
+            for (at, column) in self.columns.iter().enumerate() {
+                column.kind.write(&mut self.rows, at, &mut group).map_err(failed)?;
             }
             group.close().map_err(failed)?;
         }
-        self.rows = 0;
+        self.rows.clear();
         Ok(())
     }
 }
@@ -141,16 +144,14 @@ enum Cell<'a> {
     Optional(f64),
 }
 
-/// The columns of a file, empty.
+/// The columns of a file.
 fn table(columns: &Columns) -> Vec<Column> {
-    let column = |name: &str, values| Column { name: name.to_owned(), values };
-    let optional = || Values::Optional(Vec::new());
-    let mut all =
-        vec![column("index", Values::Count(Vec::new())), column("seed", Values::Count(Vec::new()))];
-    all.extend(columns.inputs.iter().map(|n| column(&format!("input.{n}"), Values::Unknown)));
-    all.push(column("outcome", Values::Text(Vec::new(), Vec::new())));
-    all.push(column("failure.time", optional()));
-    all.extend(columns.metrics.iter().map(|name| column(name, optional())));
+    let column = |name: &str, kind| Column { name: name.to_owned(), kind };
+    let mut all = vec![column("index", Kind::Count), column("seed", Kind::Count)];
+    all.extend(columns.inputs.iter().map(|n| column(&format!("input.{n}"), Kind::Unknown)));
+    all.push(column("outcome", Kind::Text(Vec::new())));
+    all.push(column("failure.time", Kind::Optional));
+    all.extend(columns.metrics.iter().map(|name| column(name, Kind::Optional)));
     all
 }
 
@@ -168,41 +169,43 @@ fn cells(row: &Row) -> Vec<Cell<'_>> {
 }
 
 impl Column {
-    fn push(&mut self, cell: Cell<'_>) -> io::Result<()> {
-        if let Values::Unknown = self.values {
-            self.values = match cell {
-                Cell::Text(_) => Values::Text(Vec::new(), Vec::new()),
-                _ => Values::Number(Vec::new()),
+    /// The word that stands for this value.
+    fn word(&mut self, cell: Cell<'_>) -> io::Result<u64> {
+        if let Kind::Unknown = self.kind {
+            self.kind = match cell {
+                Cell::Text(_) => Kind::Text(Vec::new()),
+                _ => Kind::Number,
             };
         }
-        match (&mut self.values, cell) {
-            (Values::Count(values), Cell::Count(n)) => values.push(n.cast_signed()),
-            (Values::Number(values), Cell::Number(x))
-            | (Values::Optional(values), Cell::Optional(x)) => values.push(x),
-            (Values::Text(texts, values), Cell::Text(text)) => {
+        match (&mut self.kind, cell) {
+            (Kind::Count, Cell::Count(n)) => Ok(n),
+            (Kind::Number, Cell::Number(x)) | (Kind::Optional, Cell::Optional(x)) => {
+                Ok(x.to_bits())
+            }
+            (Kind::Text(texts), Cell::Text(text)) => {
                 let known = texts.iter().position(|one| one.data() == text.as_bytes());
-                values.push(known.unwrap_or_else(|| {
+                let at = known.unwrap_or_else(|| {
                     texts.push(text.into());
                     texts.len() - 1
-                }));
+                });
+                Ok(at as u64)
             }
-            _ => return Err(misfit(format!("column {} mixes text and numbers", self.name))),
+            _ => Err(misfit(format!("column {} mixes text and numbers", self.name))),
         }
-        Ok(())
     }
 
     /// The column in the schema.
     fn describe(&self) -> Result<Type, ParquetError> {
-        let (physical, logical, repetition) = match self.values {
-            Values::Count(_) => {
+        let (physical, logical, repetition) = match self.kind {
+            Kind::Count => {
                 let unsigned = LogicalType::integer(64, false);
                 (Physical::INT64, Some(unsigned), Repetition::REQUIRED)
             }
-            Values::Text(..) => {
+            Kind::Text(_) => {
                 (Physical::BYTE_ARRAY, Some(LogicalType::String), Repetition::REQUIRED)
             }
-            Values::Optional(..) => (Physical::DOUBLE, None, Repetition::OPTIONAL),
-            Values::Number(_) | Values::Unknown => (Physical::DOUBLE, None, Repetition::REQUIRED),
+            Kind::Optional => (Physical::DOUBLE, None, Repetition::OPTIONAL),
+            Kind::Number | Kind::Unknown => (Physical::DOUBLE, None, Repetition::REQUIRED),
         };
         Type::primitive_type_builder(&self.name, physical)
             .with_logical_type(logical)
@@ -211,43 +214,42 @@ impl Column {
     }
 }
 
-impl Values {
-    /// Writes the values as the next column of the row group and forgets them.
-    fn write<W: Write + Send>(
-        &mut self,
+impl Kind {
+    /// Writes column `at` of `rows` as the next column of the row group.
+    fn write<W: Write + Send, F: Read + Write + Seek>(
+        &self,
+        rows: &mut Spool<F>,
+        at: usize,
         group: &mut SerializedRowGroupWriter<'_, W>,
     ) -> Result<(), ParquetError> {
         let Some(mut column) = group.next_column()? else {
             return Err(ParquetError::General("more columns than the schema has".into()));
         };
-        match self {
-            Self::Count(values) => write::<Int64Type, _>(&mut column, values, |n| Some(*n)),
-            Self::Number(values) => write::<DoubleType, _>(&mut column, values, |x| Some(*x)),
-            Self::Text(texts, values) => {
-                write::<ByteArrayType, _>(&mut column, values, |at| texts.get(*at).cloned())
-            }
-            Self::Optional(values) => {
-                write::<DoubleType, _>(&mut column, values, |x| (!x.is_nan()).then_some(*x))
-            }
+        rows.column(at, |words| match self {
+            Self::Count => write::<Int64Type>(&mut column, words, |n| Some(n.cast_signed())),
+            Self::Number => write::<DoubleType>(&mut column, words, |x| Some(f64::from_bits(x))),
+            Self::Text(texts) => write::<ByteArrayType>(&mut column, words, |at| {
+                texts.get(usize::try_from(at).ok()?).cloned()
+            }),
+            Self::Optional => write::<DoubleType>(&mut column, words, |x| {
+                Some(f64::from_bits(x)).filter(|x| !x.is_nan())
+            }),
             Self::Unknown => Ok(()),
-        }?;
+        })?;
         column.close()
     }
 }
 
-/// Writes what `value` makes of each of these, null where it makes nothing, and forgets them.
-fn write<D: DataType, R>(
+/// Writes what `value` makes of each of these words, null where it makes nothing.
+fn write<D: DataType>(
     column: &mut SerializedColumnWriter<'_>,
-    rows: &mut Vec<R>,
-    value: impl Fn(&R) -> Option<D::T>,
+    words: &[u64],
+    value: impl Fn(u64) -> Option<D::T>,
 ) -> Result<(), ParquetError> {
-    for batch in rows.chunks(BATCH) {
-        let values: Vec<Option<D::T>> = batch.iter().map(&value).collect();
-        let present: Vec<i16> = values.iter().map(|x| i16::from(x.is_some())).collect();
-        let values: Vec<D::T> = values.into_iter().flatten().collect();
-        column.typed::<D>().write_batch(&values, Some(&present), None)?;
-    }
-    rows.clear();
+    let values: Vec<Option<D::T>> = words.iter().map(|word| value(*word)).collect();
+    let present: Vec<i16> = values.iter().map(|x| i16::from(x.is_some())).collect();
+    let values: Vec<D::T> = values.into_iter().flatten().collect();
+    column.typed::<D>().write_batch(&values, Some(&present), None)?;
     Ok(())
 }
 
@@ -265,18 +267,17 @@ fn properties(columns: &[Column], about: Vec<KeyValue>) -> WriterPropertiesPtr {
         .set_created_by(CREATED_BY.to_owned())
         .set_statistics_enabled(EnabledStatistics::None)
         .set_offset_index_disabled(true)
+        .set_dictionary_page_size_limit(DICTIONARY)
         .set_key_value_metadata((!about.is_empty()).then_some(about))
         .set_max_row_group_row_count(Some(GROUP));
     for column in columns {
         let path = ColumnPath::new(vec![column.name.clone()]);
-        properties = match column.values {
+        properties = match column.kind {
             // Indices rise by one: their differences take a bit or none.
-            Values::Count(_) if column.name == "index" => properties
+            Kind::Count if column.name == "index" => properties
                 .set_column_dictionary_enabled(path.clone(), false)
                 .set_column_encoding(path, Encoding::DELTA_BINARY_PACKED),
-            Values::Count(_) | Values::Optional(..) => {
-                properties.set_column_dictionary_enabled(path, false)
-            }
+            Kind::Count | Kind::Optional => properties.set_column_dictionary_enabled(path, false),
             _ => properties,
         };
     }

@@ -5,6 +5,7 @@ use ::parquet::file::metadata::RowGroupMetaData;
 use ::parquet::file::reader::{FileReader, SerializedFileReader};
 use ::parquet::record::{Field, RowAccessor};
 use bytes::Bytes;
+use std::io::Cursor;
 
 use super::*;
 use crate::fly::Failure;
@@ -41,8 +42,12 @@ fn about() -> Vec<(String, String)> {
     vec![("scenario".into(), "hover".into())]
 }
 
+fn scratch() -> Cursor<Vec<u8>> {
+    Cursor::new(Vec::new())
+}
+
 fn file(rows: impl Iterator<Item = Row>) -> io::Result<Vec<u8>> {
-    let mut writer = Writer::new(Vec::new(), &columns(), &about());
+    let mut writer = Writer::new(Vec::new(), scratch(), &columns(), &about());
     rows.for_each(|row| assert!(writer.push(&row).is_ok(), "{row:?}"));
     writer.finish()
 }
@@ -91,12 +96,12 @@ fn the_file_says_what_it_is() {
 
 #[test]
 fn a_full_group_is_written_and_forgotten() {
-    let mut writer = Writer::new(Vec::new(), &columns(), &about());
+    let mut writer = Writer::new(Vec::new(), scratch(), &columns(), &about());
     let count = GROUP as u64 + 5;
     for index in 0..count {
         writer.push(&row(index)).expect("pushed");
     }
-    assert_eq!(writer.rows, 5);
+    assert_eq!(writer.rows.rows(), 5);
     let bytes = writer.finish().expect("written");
     assert_eq!(bytes, file((0..count).map(row)).expect("written"));
     let reader = reader(bytes);
@@ -113,7 +118,7 @@ fn no_flight_is_a_file_too() {
 
 #[test]
 fn what_does_not_fit_is_refused() {
-    let mut writer = Writer::new(Vec::new(), &columns(), &[]);
+    let mut writer = Writer::new(Vec::new(), scratch(), &columns(), &[]);
     writer.push(&row(0)).expect("pushed");
     let mut mixed = row(1);
     mixed.inputs[1] = Input::Number(1.0);
@@ -136,7 +141,7 @@ fn a_full_disk_is_named() {
             Ok(())
         }
     }
-    let mut writer = Writer::new(Full, &columns(), &[]);
+    let mut writer = Writer::new(Full, scratch(), &columns(), &[]);
     writer.push(&row(0)).expect("kept in memory");
     let error = writer.finish().map(|_| ()).expect_err("full");
     assert_eq!(error.kind(), io::ErrorKind::StorageFull);

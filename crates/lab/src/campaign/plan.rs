@@ -200,11 +200,10 @@ impl Campaign {
 
     /// The columns of its results.
     pub fn columns(&self) -> Columns {
-        let mut metrics = metric::names();
-        if self.choices.metrics == Metrics::Position || !self.scenario.has_attitude() {
-            metrics.retain(|name| !metric::of_attitude(name));
-        }
-        Columns { inputs: self.sweeps.iter().map(|sweep| sweep.name.clone()).collect(), metrics }
+        let all = self.choices.metrics == Metrics::All && self.scenario.has_attitude();
+        let metrics = metric::names().iter().filter(|name| all || !metric::of_attitude(name));
+        let inputs = self.sweeps.iter().map(|sweep| sweep.name.clone());
+        Columns { inputs: inputs.collect(), metrics: metrics.cloned().collect() }
     }
 
     /// Each input with its distribution in words.

@@ -9,11 +9,9 @@ use super::read::{scientific, unknown};
 
 /// Every expectation must name a metric that the flight has.
 pub(super) fn check(scenario: &Scenario, broken: &[&str], faults: &mut Vec<Fault>) {
-    let mut known = names();
-    if !scenario.has_attitude() && !broken.contains(&"actuation") {
-        known.retain(|name| !of_attitude(name));
-    }
-    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    let all = scenario.has_attitude() || broken.contains(&"actuation");
+    let known = names().iter().map(String::as_str).filter(|name| all || !of_attitude(name));
+    let known: Vec<&str> = known.collect();
     for expectation in &scenario.expect {
         let name = expectation.metric.as_str();
         if !known.contains(&name) {

@@ -12,6 +12,7 @@ mod resolve;
 mod rows;
 mod schema;
 mod source;
+mod structure;
 mod whole;
 
 use stormpetrel_control::attitude::AttitudeLawSettings;

@@ -200,21 +200,22 @@ pub(super) fn refuse(
     unit: &str,
     (lo, hi): (f64, f64),
 ) -> Option<(String, Option<String>)> {
+    let fraction = unit == "count" && !whole && x.fract() != 0.0;
+    if x >= lo && x <= hi && !fraction && x.is_finite() {
+        return None;
+    }
     let shown = if unit == "1" { String::new() } else { format!(" {unit}") };
     let range = format!("{} to {}{shown}", scientific(lo), scientific(hi));
     if !x.is_finite() {
         return Some((format!("`{field}` = {x}: must be a finite number from {range}"), None));
     }
-    if unit == "count" && !whole && x.fract() != 0.0 {
+    if fraction {
         let help = format!(
             "write {} or {}; a [[sweep]] gives whole numbers with `list` or `grid`",
             x.floor(),
             x.ceil()
         );
         return Some((format!("`{field}` = {x}: must be a whole number"), Some(help)));
-    }
-    if x >= lo && x <= hi {
-        return None;
     }
     Some((format!("`{field}` = {}: must lie in {range}", scientific(x)), slip(x, unit, (lo, hi))))
 }

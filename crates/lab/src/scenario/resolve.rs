@@ -1,4 +1,4 @@
-//! A scenario written out with every default, and the part of it that a batch must share.
+//! A scenario written out with every default.
 
 use serde_json::{Map, Value, json};
 use stormpetrel_control::options::{Cells, OptionVisitor, Options, Shape};
@@ -69,45 +69,24 @@ impl Scenario {
         all.extend(writer.all);
         Value::Object(all)
     }
-
-    /// Names and choices, without numbers: equal in all flights of a batch.
-    pub fn structure(&self) -> String {
-        let mut writer = Writer { skip: !self.has_attitude(), ..Writer::default() };
-        self.clone().blocks(&mut writer);
-        let flight = self.flight();
-        format!(
-            "{} ticks={} substeps={} every={:?} cares={:?} late={} drops={}",
-            writer.structure,
-            self.ticks(),
-            self.run.substeps,
-            flight.stack.every,
-            flight.cares,
-            flight.timing.late,
-            flight.timing.drops,
-        )
-    }
 }
 
 #[derive(Default)]
 struct Writer {
     all: Map<String, Value>,
-    structure: String,
     skip: bool,
 }
 
 /// The settings of one block.
 #[derive(Default)]
-struct Block {
-    values: Map<String, Value>,
-    choices: String,
-}
+struct Block(Map<String, Value>);
 
 impl VisitorMut<f64> for Block {
     fn number(&mut self, path: &Path<'_>, _: &Meta, value: &mut f64) {
         let dotted = path.to_string();
         let mut parts = dotted.split('.').collect::<Vec<_>>();
         let Some(last) = parts.pop() else { return };
-        let mut map = &mut self.values;
+        let mut map = &mut self.0;
         for part in parts {
             let inner = map.entry(part).or_insert_with(|| Value::Object(Map::new()));
             let Value::Object(inner) = inner else { return };
@@ -127,8 +106,7 @@ impl OptionVisitor for Block {
         current: usize,
     ) -> usize {
         let chosen = names.get(current).copied().unwrap_or_default();
-        self.values.insert(name.to_owned(), json!(chosen));
-        self.choices += &format!(" {name}={chosen}");
+        self.0.insert(name.to_owned(), json!(chosen));
         current
     }
 
@@ -141,39 +119,28 @@ impl OptionVisitor for Block {
     ) -> Cells {
         let rows: Vec<_> = current.cells.chunks(shape.columns.len()).collect();
         let value = if current.file.is_empty() { json!(rows) } else { json!(current.file) };
-        self.values.insert(name.to_owned(), value);
-        // Equal tables are kept once, so their place tells them apart.
-        self.choices += &format!(" {name}={:p}", current.cells);
+        self.0.insert(name.to_owned(), value);
         current
     }
 }
 
-fn write<S: Settings>(settings: &mut S) -> (Value, String) {
+fn write<S: Settings>(settings: &mut S) -> Value {
     let mut block = Block::default();
-    block.values.insert(S::KEY.to_owned(), json!(settings.name()));
+    block.0.insert(S::KEY.to_owned(), json!(settings.name()));
     settings.settings(&mut block);
-    (Value::Object(block.values), format!("{}{}", settings.name(), block.choices))
+    Value::Object(block.0)
 }
 
 impl BlockVisitor for Writer {
     fn block<S: Settings>(&mut self, key: &'static str, _: &'static str, settings: &mut S) {
-        if self.skip && ATTITUDE_LEVELS.contains(&key) {
-            return;
+        if !(self.skip && ATTITUDE_LEVELS.contains(&key)) {
+            self.all.insert(key.to_owned(), write(settings));
         }
-        let (value, structure) = write(settings);
-        self.all.insert(key.to_owned(), value);
-        // Presets of a vehicle differ in numbers and choices only.
-        let structure = match key {
-            "vehicle" => structure.trim_start_matches(settings.name()).to_owned(),
-            _ => structure,
-        };
-        self.structure += &format!("{key}: {structure}; ");
     }
 
     fn list<S: Settings>(&mut self, key: &'static str, _: &'static str, settings: &mut Vec<S>) {
-        let (values, structures): (Vec<_>, Vec<_>) = settings.iter_mut().map(write).unzip();
+        let values = settings.iter_mut().map(write).collect();
         self.all.insert(key.to_owned(), Value::Array(values));
-        self.structure += &format!("{key}: {}; ", structures.join(", "));
     }
 
     fn plain<R: Record<f64>, O: Options>(
@@ -186,7 +153,6 @@ impl BlockVisitor for Writer {
         let mut block = Block::default();
         options.visit(&mut block);
         numbers.visit_mut(&Path::ROOT, &Meta::signal("", ""), &mut block);
-        self.all.insert(key.to_owned(), Value::Object(block.values));
-        // How a flight starts and ends changes its numbers, not its structure.
+        self.all.insert(key.to_owned(), Value::Object(block.0));
     }
 }

@@ -2,9 +2,8 @@
 
 use std::fmt::Write;
 
-use super::{Story, bins, figures, metric, percent, range, texts, with_unit};
-use crate::campaign::result::{Columns, Input, Row};
-use crate::campaign::summary::{Correlation, SCORE, Summary, wilson};
+use super::{Story, bins, figures, percent, range, texts, with_unit};
+use crate::campaign::summary::{Correlation, SCORE, Sampled, Summary, wilson};
 use crate::page::{self, escape, number};
 
 /// The inputs that matter most first, with their correlations.
@@ -75,21 +74,18 @@ pub(super) fn settings(page: &mut String, story: &Story) {
 
 /// Settings that are names: a table of each.
 fn choices(page: &mut String, summary: &Summary) {
+    let score = summary.columns().metrics.iter().position(|name| name == SCORE);
     for (at, name) in summary.columns().inputs.iter().enumerate() {
-        let text = |row: &Row| match row.inputs.get(at) {
-            Some(Input::Text(text)) => Some(text.clone()),
-            _ => None,
-        };
-        let mut names: Vec<String> = summary.sample().iter().filter_map(text).collect();
-        names.sort();
+        let mut names: Vec<&str> = summary.sample().filter_map(|row| row.text(at)).collect();
+        names.sort_unstable();
         names.dedup();
         if names.is_empty() {
             continue;
         }
         let _ = writeln!(page, "<h3><code>{}</code></h3>", escape(name));
         let rows = names.iter().map(|choice| {
-            let with = summary.sample().iter().filter(|row| text(row).as_ref() == Some(choice));
-            choice_row(choice, &with.collect::<Vec<_>>(), summary.columns())
+            let with = summary.sample().filter(|row| row.text(at) == Some(choice));
+            choice_row(choice, with, score)
         });
         let head = ["choice", "flights", "flown to the end", "95 % interval"];
         let head = texts(&[&head[..], &[&format!("median {}", with_unit(SCORE))]].concat());
@@ -97,15 +93,25 @@ fn choices(page: &mut String, summary: &Summary) {
     }
 }
 
-fn choice_row(choice: &str, rows: &[&Row], columns: &Columns) -> Vec<String> {
-    let flown: Vec<_> = rows.iter().filter(|row| row.failure.is_none()).collect();
-    let mut scores: Vec<f64> = flown.iter().filter_map(|row| metric(row, columns, SCORE)).collect();
-    scores.sort_by(f64::total_cmp);
-    let interval = wilson(flown.len() as u64, rows.len() as u64);
+fn choice_row<'a>(
+    choice: &str,
+    rows: impl Iterator<Item = Sampled<'a>>,
+    score: Option<usize>,
+) -> Vec<String> {
+    let (mut flights, mut flown, mut scores) = (0_u64, 0_u64, Vec::new());
+    for row in rows {
+        flights += 1;
+        if row.failure.is_none() {
+            flown += 1;
+            scores.extend(score.and_then(|at| row.metric(at)));
+        }
+    }
+    scores.sort_unstable_by(f64::total_cmp);
+    let interval = wilson(flown, flights);
     vec![
         choice.to_owned(),
-        rows.len().to_string(),
-        percent(flown.len() as f64 / rows.len() as f64, interval),
+        flights.to_string(),
+        percent(flown as f64 / flights as f64, interval),
         range(interval),
         bins::quantile(&scores, 0.5).map_or_else(|| "-".into(), number),
     ]

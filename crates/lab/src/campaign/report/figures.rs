@@ -2,8 +2,7 @@
 
 use super::bins::{Bins, quantile, scale_of_inputs, scale_of_results};
 use super::with_unit;
-use crate::campaign::result::Row;
-use crate::campaign::summary::{SCORE, Summary, number as input, wilson};
+use crate::campaign::summary::{SCORE, Sampled, Summary, wilson};
 use crate::page::number;
 use crate::plot::{Column, Figure, Limit, Mark, Panel, Scale, Series};
 
@@ -55,9 +54,9 @@ fn columns(values: usize) -> usize {
 pub(super) fn dependence(summary: &Summary, at: usize, unit: &str) -> String {
     let name = summary.columns().inputs.get(at).map_or("", String::as_str);
     let x_label = if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") };
-    let values = summary.sample().iter().filter_map(|row| input(row, at));
+    let values = summary.sample().filter_map(|row| row.number(at));
     let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
+    sorted.sort_unstable_by(f64::total_cmp);
     let scale = scale_of_inputs(&sorted);
     let Some(bins) = Bins::new(&sorted, scale, columns(sorted.len()).min(CURVE)) else {
         return String::new();
@@ -88,11 +87,11 @@ struct Curve {
 }
 
 impl Curve {
-    fn new(rows: &[Row], at: usize, bins: &Bins) -> Self {
+    fn new<'a>(rows: impl Iterator<Item = Sampled<'a>>, at: usize, bins: &Bins) -> Self {
         // Sum of the inputs, flights, successes: a point stands where its flights are.
         let mut sums = vec![(0.0, 0_u64, 0_u64); bins.count()];
         for row in rows {
-            if let Some(x) = input(row, at) {
+            if let Some(x) = row.number(at) {
                 let (sum, flights, flown) = &mut sums[bins.of(x)];
                 *sum += x;
                 *flights += 1;
@@ -143,13 +142,13 @@ impl Cloud {
         let score = summary.columns().metrics.iter().position(|name| name == SCORE);
         let mut cloud = Self::default();
         for row in summary.few(POINTS) {
-            let Some(x) = input(row, at) else { continue };
+            let Some(x) = row.number(at) else { continue };
             if row.failure.is_some() {
                 cloud.failed.push(x);
                 cloud.edge.push(f64::INFINITY);
-            } else if let Some(y) = score.and_then(|at| row.metrics.get(at)) {
+            } else if let Some(y) = score.and_then(|at| row.metric(at)) {
                 cloud.x.push(x);
-                cloud.score.push(*y);
+                cloud.score.push(y);
             }
         }
         cloud

@@ -153,7 +153,7 @@ fn distributions(page: &mut String, summary: &Summary) {
     let mut drawings = String::new();
     for metric in key_metrics(summary) {
         let mut values: Vec<f64> = summary.metric(metric).map(|(_, value)| value).collect();
-        values.sort_by(f64::total_cmp);
+        values.sort_unstable_by(f64::total_cmp);
         let shown = [0.0, 0.05, 0.5, 0.95, 1.0].map(|q| bins::quantile(&values, q));
         let mut row = vec![with_unit(metric)];
         row.extend(shown.map(|value| value.map_or_else(|| "-".into(), number)));
@@ -189,7 +189,7 @@ fn sampled(page: &mut String, summary: &Summary) {
     if summary.sampled_every() > 1 {
         let text = format!(
             "This and everything below except the worst cases is from {} flights, one in {}, chosen by their index.",
-            summary.sample().len(),
+            summary.sampled(),
             summary.sampled_every()
         );
         page::note(page, &text);

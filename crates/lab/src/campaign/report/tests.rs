@@ -57,7 +57,10 @@ fn page(flights: u64) -> String {
         format!(
             "stormpetrel run scenarios/gusts.toml --set run.seed={} --set wind.speed={:?}",
             row.seed,
-            super::super::summary::number(row, 0).unwrap_or(0.0)
+            match row.inputs[0] {
+                Input::Number(x) => x,
+                Input::Text(_) => 0.0,
+            }
         )
     };
     let worst: Vec<_> = summary.worst().iter().map(|r| (r.clone(), command(r))).collect();

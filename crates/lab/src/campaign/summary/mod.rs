@@ -13,11 +13,12 @@ use std::cmp::Ordering;
 
 use stormpetrel_plant::flight::Cause;
 
-use super::result::{Columns, Input, Row};
+use super::result::{Columns, Row};
+use crate::fly::Failure;
 use sample::Sample;
 
 pub use rank::spearman;
-pub use sample::SAMPLE;
+pub use sample::{SAMPLE, Sampled};
 pub use wilson::{Interval, wilson};
 
 /// The metric by which flights are compared.
@@ -67,13 +68,13 @@ impl Summary {
         Self {
             score: metrics.iter().position(|name| name == SCORE),
             columns: Columns { inputs: columns.inputs.clone(), metrics },
-            places,
             flights: 0,
             failures: Vec::new(),
             room: worst,
             worst: Vec::with_capacity(worst + 1),
-            sample: Sample::new(SAMPLE),
+            sample: Sample::new(SAMPLE, columns.inputs.len(), places.len()),
             correlations: OnceCell::new(),
+            places,
         }
     }
 
@@ -86,36 +87,24 @@ impl Summary {
                 None => self.failures.push((failure.cause, 1)),
             }
         }
-        let metrics = self.places.iter().filter_map(|at| row.metrics.get(*at).copied());
-        let row = Row { metrics: metrics.collect(), inputs: row.inputs.clone(), ..*row };
-        self.keep_if_bad(&row);
-        self.sample.push(row);
+        let value = |at: &usize| row.metrics.get(*at).copied().unwrap_or(f64::NAN);
+        let metrics: Vec<f64> = self.places.iter().map(value).collect();
+        self.sample.push(row, &metrics);
         self.correlations.take();
-    }
-
-    fn keep_if_bad(&mut self, row: &Row) {
-        let place = self.worst.partition_point(|other| self.compare(other, row).is_lt());
+        let standing = self.standing(row.index, row.failure, &metrics);
+        let worse = |other: &Row| {
+            self.standing(other.index, other.failure, &other.metrics).cmp(&standing).is_lt()
+        };
+        let place = self.worst.partition_point(worse);
         if place < self.room {
-            self.worst.insert(place, row.clone());
+            self.worst.insert(place, Row { inputs: row.inputs.clone(), metrics, ..*row });
             self.worst.truncate(self.room);
         }
     }
 
-    /// The worse flight first: failed ones by the time of failure, then the others by their score.
-    /// Equally bad flights are in the order of their indices; one without score is the least bad.
-    fn compare(&self, a: &Row, b: &Row) -> Ordering {
-        let by_failure = match (a.failure, b.failure) {
-            (Some(a), Some(b)) => a.time.total_cmp(&b.time),
-            (Some(_), None) => Ordering::Less,
-            (None, Some(_)) => Ordering::Greater,
-            (None, None) => self.badness(b).total_cmp(&self.badness(a)),
-        };
-        by_failure.then(a.index.cmp(&b.index))
-    }
-
-    fn badness(&self, row: &Row) -> f64 {
-        let score = self.score.and_then(|at| row.metrics.get(at)).copied();
-        score.filter(|score| !score.is_nan()).unwrap_or(f64::NEG_INFINITY)
+    fn standing(&self, index: u64, failure: Option<Failure>, metrics: &[f64]) -> Standing {
+        let score = self.score.and_then(|at| metrics.get(at)).copied();
+        Standing { failed: failure.map(|failure| failure.time), score, index }
     }
 
     /// The columns of the rows that are kept.
@@ -153,12 +142,17 @@ impl Summary {
     }
 
     /// The flights of the sample, in the order of their indices.
-    pub fn sample(&self) -> &[Row] {
+    pub fn sample(&self) -> impl Iterator<Item = Sampled<'_>> {
         self.sample.rows()
     }
 
+    /// How many flights the sample has.
+    pub fn sampled(&self) -> usize {
+        self.sample.len()
+    }
+
     /// At most `count` flights of the sample, for a figure.
-    pub fn few(&self, count: usize) -> Vec<&Row> {
+    pub fn few(&self, count: usize) -> impl Iterator<Item = Sampled<'_>> {
         self.sample.at_most(count)
     }
 
@@ -169,30 +163,34 @@ impl Summary {
 
     /// The flight of the sample with the median `position.iae` among those flown to their end (of an
     /// even number the better of the two in the middle); empty where there are none.
-    pub fn median(&self) -> Option<&Row> {
-        let mut flown: Vec<&Row> = self.sample().iter().filter(|r| r.failure.is_none()).collect();
-        flown.retain(|row| self.badness(row) > f64::NEG_INFINITY);
-        flown.sort_by(|a, b| self.compare(a, b));
-        flown.get(flown.len() / 2).copied()
+    pub fn median(&self) -> Option<Sampled<'_>> {
+        let score = |row: Sampled| row.metric(self.score?).filter(|_| row.failure.is_none());
+        let scores = self.sample().enumerate().map(|(at, row)| Some((score(row)?, at)));
+        let mut scores: Vec<(f64, usize)> = scores.flatten().collect();
+        // Of equally bad ones the first in the order of their indices.
+        let worst_first =
+            |a: &(f64, usize), b: &(f64, usize)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
+        scores.sort_unstable_by(worst_first);
+        scores.get(scores.len() / 2).and_then(|(_, at)| self.sample.row(*at))
     }
 
     /// The values of a metric over the flights of the sample that were flown to their end, with the
     /// flights; flights that do not have it, or not as a finite number, are left out.
-    pub fn metric<'a>(&'a self, name: &str) -> impl Iterator<Item = (&'a Row, f64)> + use<'a> {
+    pub fn metric(&self, name: &str) -> impl Iterator<Item = (Sampled<'_>, f64)> + use<'_> {
         let at = self.columns.metrics.iter().position(|known| known == name);
-        let flown = self.sample().iter().filter(|row| row.failure.is_none());
+        let flown = self.sample().filter(|row| row.failure.is_none());
         flown.filter_map(move |row| {
-            let value = *row.metrics.get(at?)?;
+            let value = row.metric(at?)?;
             value.is_finite().then_some((row, value))
         })
     }
 
     /// Positions and names of the inputs that are numbers.
     pub fn numeric_inputs(&self) -> Vec<(usize, &str)> {
-        let Some(first) = self.sample().first() else { return Vec::new() };
-        let inputs = first.inputs.iter().zip(&self.columns.inputs).enumerate();
-        let numeric = inputs.filter(|(_, (input, _))| matches!(input, Input::Number(_)));
-        numeric.map(|(at, (_, name))| (at, name.as_str())).collect()
+        let Some(first) = self.sample().next() else { return Vec::new() };
+        let inputs = self.columns.inputs.iter().enumerate();
+        let numeric = inputs.filter(|(at, _)| first.number(*at).is_some());
+        numeric.map(|(at, name)| (at, name.as_str())).collect()
     }
 
     /// Rank correlation of each numeric input with each of the [`KEY_METRICS`] that the flights have
@@ -210,12 +208,11 @@ impl Summary {
             };
             for metric in KEY_METRICS.iter().filter(|name| self.has(name)) {
                 let values = self.metric(metric);
-                let pairs = values.filter_map(|(row, value)| Some((number(row, at)?, value)));
+                let pairs = values.filter_map(|(row, value)| Some((row.number(at)?, value)));
                 add(metric, &pairs.collect::<Vec<_>>());
             }
-            let success = |row: &Row| if row.failure.is_none() { 1.0 } else { 0.0 };
-            let pairs =
-                self.sample().iter().filter_map(|row| Some((number(row, at)?, success(row))));
+            let success = |row: &Sampled| if row.failure.is_none() { 1.0 } else { 0.0 };
+            let pairs = self.sample().filter_map(|row| Some((row.number(at)?, success(&row))));
             add(SUCCESS, &pairs.collect::<Vec<_>>());
         }
         all
@@ -227,11 +224,26 @@ impl Summary {
     }
 }
 
-/// The input at that place, where it is a number.
-pub fn number(row: &Row, at: usize) -> Option<f64> {
-    match row.inputs.get(at)? {
-        Input::Number(x) => Some(*x),
-        Input::Text(_) => None,
+/// How bad a flight was; the least is the worst: failed ones by the time of failure (s), then the others
+/// by falling score, one without score last. Equally bad flights are in the order of their indices.
+#[derive(Clone, Copy, Debug)]
+struct Standing {
+    failed: Option<f64>,
+    score: Option<f64>,
+    index: u64,
+}
+
+impl Standing {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let badness =
+            |one: &Self| one.score.filter(|score| !score.is_nan()).unwrap_or(f64::NEG_INFINITY);
+        let worse = match (self.failed, other.failed) {
+            (Some(a), Some(b)) => a.total_cmp(&b),
+            (Some(_), None) => Ordering::Less,
+            (None, Some(_)) => Ordering::Greater,
+            (None, None) => badness(other).total_cmp(&badness(self)),
+        };
+        worse.then(self.index.cmp(&other.index))
     }
 }
 

@@ -27,7 +27,7 @@ pub fn spearman(pairs: &[(f64, f64)]) -> f64 {
 fn ranks(values: Vec<f64>) -> Vec<f64> {
     // Zeros of either sign are equal.
     let mut order: Vec<(f64, usize)> = values.into_iter().map(|v| v + 0.0).zip(0..).collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let mut ranks = vec![0.0; order.len()];
     let mut before = 0;
     for equal in order.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq()) {
