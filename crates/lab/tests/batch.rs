@@ -75,6 +75,36 @@ fn bits(outcome: &Outcome) -> Vec<(&str, u64)> {
     named.chain([("failure", failure.to_bits())]).collect()
 }
 
+/// Lanes share laws, options and rates; what only numbers tell apart flies together.
+#[test]
+fn flights_with_other_choices_do_not_share_lanes() {
+    let structure = |sets: &[&str]| {
+        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+        scenario(&sets).structure()
+    };
+    let plain = structure(&[]);
+    for alike in ["vehicle.mass=0.5", "run.seed=4", "vehicle.model=article", "start.offset.x=0.1"] {
+        assert_eq!(structure(&[alike]), plain, "{alike}");
+    }
+    let others = [
+        "observer.law=none",
+        "observer.input=commanded",
+        "observer.z2=doubled",
+        "attitude_reference.rates=none",
+        "disturbance=[]",
+        "disturbance=[{ kind = \"harmonic\" }, { kind = \"harmonic\" }]",
+        "reference.shape=hover",
+        "run.substeps=2",
+        "rates={ position_every = 2 }",
+    ];
+    let mut seen = vec![plain];
+    for other in others {
+        let one = structure(&[other]);
+        assert!(!seen.contains(&one), "{other}: {one}");
+        seen.push(one);
+    }
+}
+
 #[test]
 fn a_flight_through_the_world_has_the_same_bits_in_any_lane() {
     let flights = worldly();
