@@ -39,10 +39,11 @@ fn processor() -> String {
     format!("{} (model {}, stepping {})", line("model name"), line("model\t"), line("stepping"))
 }
 
-/// Time and memory of campaigns from one flight to a million, 0.1 s of flight each.
+/// Time and memory of campaigns from one flight to a million, 1 s of flight each.
 fn campaigns() -> Result<String, String> {
-    let mut text = "Campaigns of the scenario `campaign/robustness`, 0.1 s of flight each, all metrics, results written:\n\n\
-                    | flights | s | flights/s | MB at most |\n|---|---|---|---|\n"
+    let mut text = "Campaigns of the scenario `campaign/robustness`, 1 s of flight each, all metrics, results written; the best of \
+                    three, of a million one:\n\n\
+                    | flights | s | us a flight | MB at most |\n|---|---|---|---|\n"
         .to_owned();
     for flights in [1u32, 100, 10_000, 100_000, 1_000_000] {
         let set = format!("campaign.flights={flights}");
@@ -52,15 +53,20 @@ fn campaigns() -> Result<String, String> {
             file,
             "--quiet",
             "--set",
-            "run.duration=0.1",
+            "run.duration=1",
             "--set",
-            "run.late=0.05",
+            "run.late=0.5",
             "--set",
             &set,
         ];
-        let (seconds, megabytes) = measured(&arguments, "bench-campaign")?;
-        let rate = f64::from(flights) / seconds;
-        text += &format!("| {flights} | {seconds:.2} | {rate:.0} | {megabytes:.0} |\n");
+        let (mut seconds, mut megabytes) = (f64::INFINITY, 0.0);
+        for _ in 0..if flights < 1_000_000 { 3 } else { 1 } {
+            let (time, peak) = measured(&arguments, "bench-campaign")?;
+            seconds = if time < seconds { time } else { seconds };
+            megabytes = if peak > megabytes { peak } else { megabytes };
+        }
+        let each = 1e6 * seconds / f64::from(flights);
+        text += &format!("| {flights} | {seconds:.2} | {each:.1} | {megabytes:.1} |\n");
     }
     Ok(text)
 }
