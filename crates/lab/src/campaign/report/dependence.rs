@@ -101,7 +101,7 @@ fn choice_row<'a>(
     let (mut flights, mut flown, mut scores) = (0_u64, 0_u64, Vec::new());
     for row in rows {
         flights += 1;
-        if row.failure.is_none() {
+        if !row.failed {
             flown += 1;
             scores.extend(score.and_then(|at| row.metric(at)));
         }

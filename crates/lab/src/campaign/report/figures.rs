@@ -95,7 +95,7 @@ impl Curve {
                 let (sum, flights, flown) = &mut sums[bins.of(x)];
                 *sum += x;
                 *flights += 1;
-                *flown += u64::from(row.failure.is_none());
+                *flown += u64::from(!row.failed);
             }
         }
         let mut curve = Self::default();
@@ -143,7 +143,7 @@ impl Cloud {
         let mut cloud = Self::default();
         for row in summary.few(POINTS) {
             let Some(x) = row.number(at) else { continue };
-            if row.failure.is_some() {
+            if row.failed {
                 cloud.failed.push(x);
                 cloud.edge.push(f64::INFINITY);
             } else if let Some(y) = score.and_then(|at| row.metric(at)) {

@@ -164,7 +164,7 @@ impl Summary {
     /// The flight of the sample with the median `position.iae` among those flown to their end (of an
     /// even number the better of the two in the middle); empty where there are none.
     pub fn median(&self) -> Option<Sampled<'_>> {
-        let score = |row: Sampled| row.metric(self.score?).filter(|_| row.failure.is_none());
+        let score = |row: Sampled| row.metric(self.score?).filter(|_| !row.failed);
         let scores = self.sample().enumerate().map(|(at, row)| Some((score(row)?, at)));
         let mut scores: Vec<(f64, usize)> = scores.flatten().collect();
         // Of equally bad ones the first in the order of their indices.
@@ -178,7 +178,7 @@ impl Summary {
     /// flights; flights that do not have it, or not as a finite number, are left out.
     pub fn metric(&self, name: &str) -> impl Iterator<Item = (Sampled<'_>, f64)> + use<'_> {
         let at = self.columns.metrics.iter().position(|known| known == name);
-        let flown = self.sample().filter(|row| row.failure.is_none());
+        let flown = self.sample().filter(|row| !row.failed);
         flown.filter_map(move |row| {
             let value = row.metric(at?)?;
             value.is_finite().then_some((row, value))
@@ -202,18 +202,16 @@ impl Summary {
     fn correlate(&self) -> Vec<Correlation> {
         let mut all = Vec::new();
         for (at, input) in self.numeric_inputs() {
-            let mut add = |with, pairs: &[(f64, f64)]| {
-                let rank = spearman(pairs);
-                all.push(Correlation { input: input.into(), with, rank, flights: pairs.len() });
-            };
-            for metric in KEY_METRICS.iter().filter(|name| self.has(name)) {
-                let values = self.metric(metric);
+            for with in KEY_METRICS.into_iter().filter(|name| self.has(name)) {
+                let values = self.metric(with);
                 let pairs = values.filter_map(|(row, value)| Some((row.number(at)?, value)));
-                add(metric, &pairs.collect::<Vec<_>>());
+                let (rank, flights) = spearman(pairs);
+                all.push(Correlation { input: input.into(), with, rank, flights });
             }
-            let success = |row: &Sampled| if row.failure.is_none() { 1.0 } else { 0.0 };
+            let success = |row: &Sampled| if row.failed { 0.0 } else { 1.0 };
             let pairs = self.sample().filter_map(|row| Some((row.number(at)?, success(&row))));
-            add(SUCCESS, &pairs.collect::<Vec<_>>());
+            let (rank, flights) = spearman(pairs);
+            all.push(Correlation { input: input.into(), with: SUCCESS, rank, flights });
         }
         all
     }

@@ -2,42 +2,47 @@
 
 use stormpetrel_control::real::Real;
 
-/// Spearman's rank correlation of pairs, -1 to 1; equal values share the mean of their ranks.
-/// NaN where one of the two never changes, or where there are fewer than two pairs.
+/// Spearman's rank correlation of pairs, -1 to 1, and how many pairs there were; equal values share the
+/// mean of their ranks. NaN where one of the two never changes, or where there are fewer than two pairs.
 ///
 /// It is the correlation coefficient of the ranks: 1 where one always rises with the other, however
 /// curved, 0 where the order of one says nothing of the other.
 ///
 /// Source: C. Spearman, "The proof and measurement of association between two things", American
 /// Journal of Psychology 15 (1904), 72-101.
-pub fn spearman(pairs: &[(f64, f64)]) -> f64 {
-    let x = ranks(pairs.iter().map(|p| p.0).collect());
-    let y = ranks(pairs.iter().map(|p| p.1).collect());
-    let middle = 0.5 * (pairs.len() as f64 + 1.0);
+pub fn spearman(pairs: impl Iterator<Item = (f64, f64)>) -> (f64, usize) {
+    let (mut x, mut y): (Vec<f64>, Vec<f64>) = pairs.unzip();
+    rank(&mut x);
+    rank(&mut y);
+    let middle = 0.5 * (x.len() as f64 + 1.0);
     let (mut xx, mut yy, mut xy) = (0.0, 0.0, 0.0);
     for (a, b) in x.iter().map(|r| r - middle).zip(y.iter().map(|r| r - middle)) {
         xx += a.sq();
         yy += b.sq();
         xy += a * b;
     }
-    if xx > 0.0 && yy > 0.0 { xy / (xx.sqrt() * yy.sqrt()) } else { f64::NAN }
+    let rank = if xx > 0.0 && yy > 0.0 { xy / (xx.sqrt() * yy.sqrt()) } else { f64::NAN };
+    (rank, x.len())
 }
 
-/// The rank of each value, from one; equal values get the mean of their ranks.
-fn ranks(values: Vec<f64>) -> Vec<f64> {
+/// Puts in place of each value its rank, from one; equal values get the mean of their ranks.
+fn rank(values: &mut [f64]) {
     // Zeros of either sign are equal.
-    let mut order: Vec<(f64, usize)> = values.into_iter().map(|v| v + 0.0).zip(0..).collect();
-    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let mut ranks = vec![0.0; order.len()];
-    let mut before = 0;
-    for equal in order.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq()) {
-        let mean = before as f64 + 0.5 * (equal.len() as f64 + 1.0);
-        for (_, at) in equal {
-            ranks[*at] = mean;
-        }
-        before += equal.len();
+    for value in &mut *values {
+        *value += 0.0;
     }
-    ranks
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_unstable_by(|a, b| values[*a].total_cmp(&values[*b]));
+    let mut before = 0;
+    while let Some(first) = order.get(before) {
+        let value = values[*first];
+        let rest = order[before..].iter();
+        let equal = rest.take_while(|at| values[**at].total_cmp(&value).is_eq()).count();
+        for at in &order[before..before + equal] {
+            values[*at] = before as f64 + 0.5 * (equal as f64 + 1.0);
+        }
+        before += equal;
+    }
 }
 
 #[cfg(test)]
@@ -45,11 +50,15 @@ mod tests {
     use super::*;
 
     fn of(x: &[f64], y: &[f64]) -> f64 {
-        spearman(&x.iter().copied().zip(y.iter().copied()).collect::<Vec<_>>())
+        spearman(x.iter().copied().zip(y.iter().copied())).0
     }
 
     #[test]
     fn equal_values_share_their_ranks() {
+        let ranks = |mut values: Vec<f64>| {
+            rank(&mut values);
+            values
+        };
         assert_eq!(ranks(vec![3.0, 1.0, 3.0, 2.0]), [3.5, 1.0, 3.5, 2.0]);
         assert_eq!(ranks(vec![0.0, -0.0]), [1.5, 1.5]);
     }

@@ -2,7 +2,6 @@
 
 use crate::campaign::random::{key, named};
 use crate::campaign::result::{Input, Row};
-use crate::fly::Failure;
 
 /// At most that many flights are kept.
 pub const SAMPLE: usize = 20_000;
@@ -27,7 +26,7 @@ pub(super) struct Sample {
 struct Flight {
     index: u64,
     seed: u64,
-    failure: Option<Failure>,
+    failed: bool,
 }
 
 /// A flight of the sample.
@@ -37,8 +36,8 @@ pub struct Sampled<'a> {
     pub index: u64,
     /// Seed of the flight's random draws.
     pub seed: u64,
-    /// Present where the flight failed.
-    pub failure: Option<Failure>,
+    /// Whether it ended early.
+    pub failed: bool,
     values: &'a [f64],
     texts: &'a [Vec<String>],
 }
@@ -66,8 +65,15 @@ impl<'a> Sampled<'a> {
 impl Sample {
     /// Keeps at most `room` flights of that many inputs and metrics.
     pub fn new(room: usize, inputs: usize, metrics: usize) -> Self {
-        let texts = vec![Vec::new(); inputs];
-        Self { room, every: 1, flights: Vec::new(), values: Vec::new(), texts, metrics }
+        Self {
+            room,
+            every: 1,
+            // Whole from the start: growing would leave copies behind, and untouched memory takes none.
+            flights: Vec::with_capacity(room),
+            values: Vec::with_capacity(room * (inputs + metrics)),
+            texts: vec![Vec::new(); inputs],
+            metrics,
+        }
     }
 
     /// Adds a flight of which these metrics are kept, or leaves it.
@@ -81,7 +87,8 @@ impl Sample {
         if !kept(row.index, self.every) {
             return;
         }
-        self.flights.push(Flight { index: row.index, seed: row.seed, failure: row.failure });
+        let failed = row.failure.is_some();
+        self.flights.push(Flight { index: row.index, seed: row.seed, failed });
         for (texts, input) in self.texts.iter_mut().zip(&row.inputs) {
             self.values.push(match input {
                 Input::Number(x) => *x,
@@ -119,7 +126,7 @@ impl Sample {
         Some(Sampled {
             index: flight.index,
             seed: flight.seed,
-            failure: flight.failure,
+            failed: flight.failed,
             values: &self.values[at * width..(at + 1) * width],
             texts: &self.texts,
         })
@@ -166,6 +173,7 @@ fn place(texts: &mut Vec<String>, text: &str) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fly::Failure;
     use stormpetrel_plant::flight::Cause;
 
     fn indices(room: usize, pushed: impl Iterator<Item = u64>) -> (u64, Vec<u64>) {
@@ -206,7 +214,7 @@ mod tests {
             assert_eq!((row.text(0), row.number(0)), (Some(law(row.index)), None));
             assert_eq!((row.text(1), row.number(1)), (None, Some(0.5 * x)));
             assert_eq!((row.metric(0), row.metric(1), row.metric(2)), (Some(2.0 * x), None, None));
-            assert_eq!((row.seed, row.failure.is_some()), (row.index + 7, row.index % 2 == 1));
+            assert_eq!((row.seed, row.failed), (row.index + 7, row.index % 2 == 1));
         }
     }
 
