@@ -11,6 +11,7 @@ use stormpetrel_lab::campaign::disk::Native;
 use stormpetrel_lab::campaign::drive::{Drive, End, JOURNAL, Progress, estimate, identity};
 use stormpetrel_lab::campaign::files;
 use stormpetrel_lab::campaign::journal::Index;
+use stormpetrel_lab::campaign::parquet::scratch_size;
 use stormpetrel_lab::campaign::plan::Campaign;
 use stormpetrel_lab::campaign::summary::{Summary, wilson};
 use stormpetrel_lab::reproduce::Table;
@@ -171,10 +172,12 @@ fn announce(
     }
     let bytes = 2 * estimate.bytes;
     let size = bytes as f64 / 1e6;
-    if let Some(free) = free(&args.out).filter(|free| *free < bytes && !args.resume) {
+    let most = bytes + scratch_size(flights, &campaign.columns());
+    if let Some(free) = free(&args.out).filter(|free| *free < most && !args.resume) {
         let message = format!(
-            "{}: {flights} flights need {size:.0} MB, {:.0} MB are free",
+            "{}: {flights} flights need {:.0} MB, {:.0} MB are free",
             args.out.display(),
+            most as f64 / 1e6,
             free as f64 / 1e6
         );
         return Err(input(message, "give an --out on another disk, or fly fewer flights"));

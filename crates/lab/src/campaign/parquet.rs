@@ -136,6 +136,12 @@ impl<W: Write + Send, F: Read + Write + Seek> Writer<W, F> {
     }
 }
 
+/// Bytes that the scratch file takes at most while so many flights are written.
+pub fn scratch_size(flights: u64, columns: &Columns) -> u64 {
+    let group = if flights < GROUP as u64 { flights } else { GROUP as u64 };
+    group * 8 * table(columns).len() as u64
+}
+
 /// One value of a row.
 enum Cell<'a> {
     Count(u64),

@@ -96,13 +96,15 @@ fn the_file_says_what_it_is() {
 
 #[test]
 fn a_full_group_is_written_and_forgotten() {
-    let mut writer = Writer::new(Vec::new(), scratch(), &columns(), &about());
+    let mut waiting = scratch();
+    let mut writer = Writer::new(Vec::new(), &mut waiting, &columns(), &about());
     let count = GROUP as u64 + 5;
     for index in 0..count {
         writer.push(&row(index)).expect("pushed");
     }
     assert_eq!(writer.rows.rows(), 5);
     let bytes = writer.finish().expect("written");
+    assert_eq!(waiting.get_ref().len() as u64, scratch_size(count, &columns()));
     assert_eq!(bytes, file((0..count).map(row)).expect("written"));
     let reader = reader(bytes);
     let groups = reader.metadata().row_groups().iter().map(RowGroupMetaData::num_rows);
