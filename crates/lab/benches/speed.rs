@@ -83,7 +83,7 @@ fn eight(width: Width, flight: &Flight<f64>, ticks: u64) {
 /// the processor has time to reach its speed.
 fn best(count: u64, mut work: impl FnMut()) -> f64 {
     let (start, mut best, mut runs) = (Instant::now(), f64::INFINITY, 0);
-    while runs < 5 || start.elapsed().as_secs_f64() < 0.2 {
+    while runs < 5 || start.elapsed().as_secs_f64() < 0.5 {
         let begin = Instant::now();
         work();
         best = Real::min(best, begin.elapsed().as_secs_f64() * 1e9 / count as f64);
