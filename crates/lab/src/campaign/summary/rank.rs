@@ -21,8 +21,8 @@ pub fn spearman(pairs: impl Iterator<Item = (f64, f64)>) -> (f64, usize) {
         yy += b.sq();
         xy += a * b;
     }
-    let rank = if xx > 0.0 && yy > 0.0 { xy / (xx.sqrt() * yy.sqrt()) } else { f64::NAN };
-    (rank, x.len())
+    let correlation = if xx > 0.0 && yy > 0.0 { xy / (xx.sqrt() * yy.sqrt()) } else { f64::NAN };
+    (correlation, x.len())
 }
 
 /// Puts in place of each value its rank, from one; equal values get the mean of their ranks.
