@@ -9,9 +9,8 @@ use std::time::{Duration, Instant};
 use indicatif::ProgressBar;
 use stormpetrel_lab::campaign::disk::Native;
 use stormpetrel_lab::campaign::drive::{Drive, End, JOURNAL, Progress, estimate, identity};
-use stormpetrel_lab::campaign::files;
+use stormpetrel_lab::campaign::files::{self, Held};
 use stormpetrel_lab::campaign::journal::Index;
-use stormpetrel_lab::campaign::parquet::scratch_size;
 use stormpetrel_lab::campaign::plan::Campaign;
 use stormpetrel_lab::campaign::summary::{Summary, wilson};
 use stormpetrel_lab::reproduce::Table;
@@ -33,10 +32,10 @@ pub fn sweep(args: &Sweep, common: &Common) -> Result<(), Failure> {
     let threads = args.threads.map_or_else(cores, usize::from);
     announce(&campaign, shard.1, threads, args, common)?;
     let held = files::holds(&args.out, &campaign).map_err(broken)?;
-    allowed(held, args.resume, &args.out)?;
+    allowed(&held, args.resume, &args.out)?;
     fs::create_dir_all(&args.out).map_err(broken)?;
     let _lock = lock(&args.out)?;
-    if held.is_none() {
+    if held == Held::Nothing {
         files::begin(&Native, &args.out, &campaign).map_err(broken)?;
     }
     terminal::ORDERLY.store(true, Ordering::Relaxed);
@@ -84,6 +83,9 @@ pub fn merge(args: &Merge, common: &Common) -> Result<(), Failure> {
                 "",
             ));
         };
+        if let Held::OfVersion(version) = files::holds(folder, &campaign).map_err(broken)? {
+            return Err(of_version(folder, &version));
+        }
         if index.owner().identity != identity(&campaign) {
             let message = format!("{}: part of another campaign", folder.display());
             return Err(input(
@@ -93,10 +95,17 @@ pub fn merge(args: &Merge, common: &Common) -> Result<(), Failure> {
         }
         parts.push(index);
     }
+    let advice = "give the folders of all parts; `sweep --resume` finishes one that was stopped";
+    files::complete(&campaign, &parts).map_err(|error| input(error.to_string(), advice))?;
     let broken = |error: io::Error| Failure::out(&args.out, &error);
+    let held = files::holds(&args.out, &campaign).map_err(broken)?;
+    // The parts may be joined again, and in the folder of one of them.
+    allowed(&held, held == Held::This, &args.out)?;
     fs::create_dir_all(&args.out).map_err(broken)?;
     let _lock = lock(&args.out)?;
-    files::begin(&Native, &args.out, &campaign).map_err(broken)?;
+    if held == Held::Nothing {
+        files::begin(&Native, &args.out, &campaign).map_err(broken)?;
+    }
     conclude(&campaign, &args.plan, &args.out, &parts, campaign.flights(), common)
 }
 
@@ -161,8 +170,8 @@ fn announce(
     let estimate =
         estimate(campaign, flights, threads).map_err(|e| Failure::Input(e.to_string()))?;
     let ticks = campaign.scenario.ticks();
-    let time = duration(estimate.time);
-    if estimate.time > LONGEST {
+    let time = duration(estimate);
+    if estimate > LONGEST {
         let message =
             format!("{flights} flights of {ticks} ticks would take {time} on {threads} threads");
         return Err(input(
@@ -170,9 +179,8 @@ fn announce(
             "fly fewer or shorter flights, or parts of the plan with --shard",
         ));
     }
-    let bytes = 2 * estimate.bytes;
+    let (bytes, most) = files::size(flights, &campaign.columns());
     let size = bytes as f64 / 1e6;
-    let most = bytes + scratch_size(flights, &campaign.columns());
     if let Some(free) = free(&args.out).filter(|free| *free < most && !args.resume) {
         let message = format!(
             "{}: {flights} flights need {:.0} MB, {:.0} MB are free",
@@ -215,23 +223,30 @@ fn say(common: &Common, text: &str) {
 }
 
 /// Whether the folder may be used.
-fn allowed(held: Option<bool>, resume: bool, out: &Path) -> Result<(), Failure> {
+fn allowed(held: &Held, resume: bool, out: &Path) -> Result<(), Failure> {
     let shown = out.display();
     match (held, resume) {
-        (None, true) => Err(input(
+        (Held::Nothing, true) => Err(input(
             format!("{shown}: there is no campaign to resume"),
             "leave out --resume to begin one",
         )),
-        (Some(false), _) => Err(input(
+        (Held::Another, _) => Err(input(
             format!("{shown}: holds another campaign"),
             "give another --out; to resume, give the same file, --variant, --set and --plan as before",
         )),
-        (Some(true), false) => Err(input(
+        (Held::OfVersion(version), _) => Err(of_version(out, version)),
+        (Held::This, false) => Err(input(
             format!("{shown}: this campaign was begun here before"),
             "--resume goes on with it; another --out begins it again",
         )),
         _ => Ok(()),
     }
+}
+
+fn of_version(folder: &Path, version: &str) -> Failure {
+    let message = format!("{}: begun by stormpetrel {version}", folder.display());
+    let help = "another version may fly to other bits: go on with that one, or begin again with another --out";
+    input(message, help)
 }
 
 /// Keeps every other process out of the folder while it lives.
@@ -286,7 +301,10 @@ fn conclude(
     let broken = |error: io::Error| Failure::out(out, &error);
     let summary = files::finish(&Native, out, campaign, parts, flights).map_err(broken)?;
     let command = |sets: &[String]| command("run", plan, sets);
-    let again = self::command("sweep", plan, &[]);
+    let mut again = self::command("sweep", plan, &[]);
+    if let Some(path) = &plan.drawn {
+        again += &format!(" --plan {}", word(&path.to_string_lossy()));
+    }
     files::report(&Native, out, campaign, &summary, &command, &again).map_err(broken)?;
     if common.json {
         return terminal::print_json(&files::summary_json(campaign, &summary));
@@ -299,10 +317,20 @@ fn conclude(
 
 /// The command that flies the file with these settings again.
 fn command(what: &str, plan: &Plan, sets: &[String]) -> String {
-    let mut words = vec![format!("stormpetrel {what}"), plan.file.display().to_string()];
-    words.extend(plan.variant.iter().map(|variant| format!("--variant {variant}")));
-    words.extend(plan.sets.iter().chain(sets).map(|set| format!("--set {set}")));
+    let mut words = vec![format!("stormpetrel {what}"), word(&plan.file.to_string_lossy())];
+    words.extend(plan.variant.iter().map(|variant| format!("--variant {}", word(variant))));
+    words.extend(plan.sets.iter().chain(sets).map(|set| format!("--set {}", word(set))));
     words.join(" ")
+}
+
+/// As a shell takes it for one word.
+fn word(text: &str) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "_-./=:,+@%".contains(letter);
+    if !text.is_empty() && text.chars().all(plain) {
+        text.to_owned()
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
 }
 
 fn print(

@@ -178,6 +178,89 @@ fn what_cannot_be_flown_is_refused_with_advice() {
     }
 }
 
+/// Short flights, in so many parts that one can be missing.
+const SHORT: [&str; 6] =
+    ["--set", "campaign.flights=130", "--set", "run.duration=0.02", "--set", "run.late=0.01"];
+
+#[test]
+fn flights_of_another_campaign_or_version_are_not_mixed_in() {
+    let bench = Bench::new();
+    assert!(bench.run("one", &SHORT).status.success());
+    let whole = bench.results("one");
+    let resume = |more: &[&str]| {
+        let output = bench.run("one", &[&SHORT[..], &["--resume"], more].concat());
+        (output.status.code(), message(&output))
+    };
+    for other in ["model.mass=0.7", "model.gravity=9.7", "vehicle.mass=0.6", "run.seed=9"] {
+        let (code, message) = resume(&["--set", other]);
+        assert!(
+            code == Some(2) && message.contains("holds another campaign"),
+            "{other}: {message}"
+        );
+    }
+    assert_eq!(resume(&[]), (Some(0), String::new()));
+    let about = bench.path("one").join("campaign.json");
+    let text = fs::read_to_string(&about).expect("a description");
+    let version = format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION"));
+    assert!(text.contains(&version));
+    fs::write(&about, text.replace(&version, "\"version\": \"9.9.9\"")).expect("written");
+    let (code, message) = resume(&[]);
+    assert!(code == Some(2) && message.contains("begun by stormpetrel 9.9.9 ("), "{message}");
+    assert!(bench.results("one") == whole, "nothing was touched");
+}
+
+#[test]
+fn a_merge_writes_over_no_other_campaign() {
+    let bench = Bench::new();
+    for (out, shard) in [("first", "1/2"), ("second", "2/2")] {
+        assert!(bench.run(out, &[&SHORT[..], &["--shard", shard]].concat()).status.success());
+    }
+    assert!(bench.run("whole", &SHORT).status.success());
+    assert!(bench.run("other", &[&SHORT[..], &["--set", "run.seed=4"]].concat()).status.success());
+    let other = bench.results("other");
+    let merge = |out: &str, parts: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_stormpetrel"));
+        command.args(["merge", "c.toml", "--quiet", "--out", out]).args(SHORT).args(parts);
+        let output = command.current_dir(bench.folder.path()).output().expect("the program starts");
+        (output.status.code(), message(&output))
+    };
+    let (code, message) = merge("other", &["first", "second"]);
+    assert!(code == Some(2) && message.contains("holds another campaign"), "{message}");
+    let (code, message) = merge("joined", &["first"]);
+    assert!(code == Some(2) && message.contains("flights 64 to 127 are missing"), "{message}");
+    assert!(message.contains("give the folders of all parts"), "{message}");
+    assert!(!bench.path("joined").exists() && bench.results("other") == other);
+    for _ in 0..2 {
+        assert_eq!(merge("joined", &["first", "second"]), (Some(0), String::new()));
+        assert!(bench.results("joined")[..2] == bench.results("whole")[..2]);
+    }
+}
+
+/// A plan that was written can be flown again: what are names stays names, and the report says how.
+#[test]
+fn a_plan_of_names_is_flown_again() {
+    let bench = Bench::new();
+    let forces = r#"sweep=[{ path = "disturbance.0.force", list = ["0.5", "[1, 0, 0]"] }]"#;
+    let common = ["--set", "disturbance=[{ kind = \"harmonic\" }]", "--set", forces];
+    let more = [&SHORT[..], &common].concat();
+    let first = bench.run("first", &more);
+    assert!(first.status.success(), "{}", message(&first));
+    let again = bench.run("again", &[&more[..], &["--plan", "first/plan.csv"]].concat());
+    assert!(again.status.success(), "{}", message(&again));
+    let plan = |out: &str| fs::read(bench.path(out).join("plan.csv")).expect("a plan");
+    assert!(plan("first") == plan("again"));
+    let report = fs::read_to_string(bench.path("again").join("report.html")).expect("a report");
+    assert!(report.contains("--plan first/plan.csv"));
+    // A shell takes each setting for one word.
+    assert!(report.contains("--set 'disturbance=[{ kind = "));
+    let named = bench.run("named", &[&more[..], &["--set", "sweep.0.name=seed"]].concat());
+    let message = message(&named);
+    assert!(
+        named.status.code() == Some(2) && message.contains("cannot head a column"),
+        "{message}"
+    );
+}
+
 #[test]
 fn whole_numbers_and_rows_without_a_correlation_are_told_plainly() {
     let bench = Bench::new();

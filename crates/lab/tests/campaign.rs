@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use stormpetrel_lab::campaign::disk::{Disk, Native, Scratch, Sink};
 use stormpetrel_lab::campaign::drive::{Drive, End, JOURNAL};
 use stormpetrel_lab::campaign::files;
-use stormpetrel_lab::campaign::journal::Index;
+use stormpetrel_lab::campaign::journal::{self, CHUNK, Index};
 use stormpetrel_lab::campaign::plan::Campaign;
 use tempfile::TempDir;
 
@@ -121,7 +121,7 @@ fn parts_flown_anywhere_join_into_the_same_files() {
     let error = files::finish(&Native, &place.sub("half"), &campaign, &[index], 300);
     let message = error.map(|_| ()).expect_err("a part is missing").to_string();
     assert_eq!(message, "flights 0 to 63 are missing");
-    assert!(!place.sub("half").join(files::RESULTS).exists(), "nothing half-made");
+    assert_eq!(fs::read_dir(place.sub("half")).expect("a folder").count(), 0, "nothing half-made");
 }
 
 #[test]
@@ -180,6 +180,51 @@ fn a_journal_of_another_campaign_is_refused() {
     let stop = AtomicBool::new(false);
     let error = drive(&other, &folder, &stop).fly(&mut |_| {}).expect_err("another seed");
     assert!(error.to_string().contains("belongs to another campaign"), "{error}");
+}
+
+/// As a file system may leave it after a power cut.
+#[test]
+fn zeros_behind_the_last_record_are_cut_off() {
+    let place = Place::new();
+    let campaign = place.campaign(&[]);
+    let whole = finish(&campaign, &place.sub("whole"), 1);
+    let journal = fs::read(place.sub("whole").join(JOURNAL)).expect("a journal");
+    let two_chunks = journal::size(2 * CHUNK, campaign.columns().metrics.len() as u64);
+    let path = place.sub("cut").join(JOURNAL);
+    let index = |bytes: &[u8]| {
+        fs::write(&path, bytes).expect("written");
+        Index::read(&path)
+    };
+    for zeros in [16, 17, 5000] {
+        let mut bytes = journal[..usize::try_from(two_chunks).expect("small")].to_vec();
+        bytes.resize(bytes.len() + zeros, 0);
+        let read = index(&bytes).expect("zeros are nothing").expect("a journal");
+        assert_eq!(read.tallies().map(|(chunk, _)| chunk).collect::<Vec<_>>(), [0, 1]);
+        assert!(whole == finish(&campaign, &place.sub("cut"), 2), "{zeros} zeros");
+        *bytes.last_mut().expect("a zero") = 1;
+        assert!(index(&bytes).is_err(), "not only zeros");
+    }
+}
+
+/// Also what only the laws believe, and numbers in a file beside the scenario.
+#[test]
+fn everything_that_a_flight_depends_on_makes_another_campaign() {
+    let place = Place::new();
+    let plain = place.campaign(&[]).identity();
+    assert_eq!(plain["resolved"]["model"]["mass"], 0.625);
+    let believed = place.campaign(&["model.mass=0.7"]).identity();
+    assert_eq!(believed["resolved"]["model"]["mass"], 0.7);
+
+    let file = place.file.with_file_name("route.csv");
+    let route = |height: f64| {
+        let text = format!("x,y,z,yaw\n0,0,0,0\n1,0,{height},0\n2,1,1,0\n");
+        fs::write(&file, text).expect("a table");
+        let shape = "{ shape = \"minimum-snap\", waypoints = ";
+        place.campaign(&[&format!("reference={shape} \"{}\" }}", file.display())]).identity()
+    };
+    let (low, high) = (route(0.5), route(0.6));
+    assert_eq!(low["resolved"], high["resolved"]);
+    assert_ne!(low["tables"], high["tables"]);
 }
 
 /// How an operation fails.

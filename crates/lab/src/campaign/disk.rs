@@ -78,7 +78,8 @@ impl Sink for File {
     }
 }
 
-/// Writes a file beside its place and renames it: it is never seen half-written.
+/// Writes a file beside its place and renames it: it is never seen half-written. What could not be written
+/// to its end is removed, so that it takes no room on a full disk.
 ///
 /// # Errors
 /// Those of the system, and what `fill` returns.
@@ -91,9 +92,11 @@ pub fn replace(
     beside.push(".part");
     let beside = Path::new(&beside);
     let mut file = disk.create(beside)?;
-    fill(file.as_mut())?;
-    file.flush()?;
-    file.sync()?;
+    let filled = fill(file.as_mut()).and_then(|()| file.flush()).and_then(|()| file.sync());
     drop(file);
+    if filled.is_err() {
+        let _ = std::fs::remove_file(beside);
+    }
+    filled?;
     disk.rename(beside, path)
 }

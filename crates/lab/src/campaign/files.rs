@@ -8,11 +8,11 @@ use serde_json::{Value as Json, json};
 
 use super::disk::{Disk, Sink, replace};
 use super::drive::rows;
-use super::journal::{CHUNK, Index, row};
-use super::parquet::Writer;
+use super::journal::{self, CHUNK, Index, row};
+use super::parquet::{Writer, scratch_size};
 use super::plan::Campaign;
 use super::report::{Story, html};
-use super::result::Row;
+use super::result::{Columns, Row};
 use super::summary::Summary;
 use crate::output::{REVISION, VERSION};
 
@@ -69,18 +69,66 @@ fn cell(text: &str) -> String {
     }
 }
 
-/// Whether the folder holds this very campaign; `None` where it holds none.
+/// The campaign of a folder, beside one that is asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Held {
+    /// There is none.
+    Nothing,
+    /// This one.
+    This,
+    /// This one, begun by another version of the program, which may fly it to other bits.
+    OfVersion(String),
+    /// Another one.
+    Another,
+}
+
+/// What the folder holds.
 ///
 /// # Errors
 /// Where its description cannot be read.
-pub fn holds(folder: &Path, campaign: &Campaign) -> io::Result<Option<bool>> {
-    let text = match fs::read_to_string(folder.join(CAMPAIGN)) {
+pub fn holds(folder: &Path, campaign: &Campaign) -> io::Result<Held> {
+    let path = folder.join(CAMPAIGN);
+    let text = match fs::read_to_string(&path) {
         Ok(text) => text,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Held::Nothing),
         Err(error) => return Err(error),
     };
-    let found: Json = serde_json::from_str(&text).map_err(io::Error::other)?;
-    Ok(Some(found["campaign"] == campaign.identity()))
+    let found: Json = serde_json::from_str(&text)
+        .map_err(|error| io::Error::other(format!("{}: {error}", path.display())))?;
+    let ours = about(campaign);
+    Ok(if found["campaign"] != ours["campaign"] {
+        Held::Another
+    } else if found["version"] == ours["version"] && found["revision"] == ours["revision"] {
+        Held::This
+    } else {
+        let word = |key: &str| found[key].as_str().unwrap_or("?").to_owned();
+        Held::OfVersion(format!("{} ({})", word("version"), word("revision")))
+    })
+}
+
+/// Bytes that the files of so many flights take: those that stay, and the most while they are written.
+pub fn size(flights: u64, columns: &Columns) -> (u64, u64) {
+    let (inputs, metrics) = (columns.inputs.len() as u64, columns.metrics.len() as u64);
+    let results = flights * 8 * (4 + inputs + metrics);
+    // Index and seed have up to 24 digits with their commas, a drawn number 20.
+    let plan = flights * (24 + 20 * inputs);
+    let stay = journal::size(flights, metrics) + results + plan;
+    (stay, stay + scratch_size(flights, columns))
+}
+
+/// Whether the parts have every flight of the plan.
+///
+/// # Errors
+/// Which flights are missing.
+pub fn complete(campaign: &Campaign, parts: &[Index]) -> io::Result<()> {
+    let chunks = 0..campaign.flights().div_ceil(CHUNK);
+    let mut missing = chunks.filter(|chunk| !parts.iter().any(|part| part.has(*chunk)));
+    missing.next().map_or(Ok(()), |chunk| Err(absent(campaign, chunk)))
+}
+
+fn absent(campaign: &Campaign, chunk: u64) -> io::Error {
+    let rows = rows(campaign, chunk);
+    io::Error::other(format!("flights {} to {} are missing", rows.start, rows.end - 1))
 }
 
 /// Shows the first `flights` rows of the plan in order, from the journals of its parts.
@@ -103,8 +151,7 @@ pub fn each_row(
         }
         let rows = rows(campaign, chunk);
         let Some(entries) = found.filter(|all| all.len() as u64 == rows.end - rows.start) else {
-            let message = format!("flights {} to {} are missing", rows.start, rows.end - 1);
-            return Err(io::Error::other(message));
+            return Err(absent(campaign, chunk));
         };
         for (index, entry) in rows.zip(entries) {
             see(&row(index, campaign.seed(index), campaign.inputs(index), entry))?;

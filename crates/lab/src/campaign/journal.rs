@@ -4,8 +4,8 @@
 //!   record: chunk number, length, checksum of both; the flights; checksum of the flights
 //!
 //! All numbers little end first, checksums CRC-32. A record that ends with the file was being written
-//! when the program died: it is cut off and flown again. Anything else that does not add up is damage,
-//! and is said.
+//! when the program died, and zeros up to the end are room that a file system gave and never filled: both
+//! are cut off and flown again. Anything else that does not add up is damage, and is said.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write as _};
@@ -148,6 +148,20 @@ struct Record {
     good: u32,
 }
 
+/// Whether nothing else is left to read.
+fn only_zeros(file: &mut impl Read) -> io::Result<bool> {
+    let mut bytes = [0; 4096];
+    loop {
+        match file.read(&mut bytes) {
+            Ok(0) => return Ok(true),
+            Ok(count) if bytes[..count].iter().all(|byte| *byte == 0) => {}
+            Ok(_) => return Ok(false),
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+}
+
 /// A message about a journal that cannot be used.
 fn damaged(path: &Path, at: u64, what: &str) -> io::Error {
     io::Error::other(format!(
@@ -197,6 +211,9 @@ impl Index {
         let mut head = [0; HEAD];
         file.read_exact(&mut head)?;
         if crc32fast::hash(&head[..12]) != u32_at(&head, 12) {
+            if head == [0; HEAD] && only_zeros(file)? {
+                return Ok(false);
+            }
             return Err(damaged(&self.path, at, "a record's head does not have its checksum"));
         }
         let (chunk, size) = (u64_at(&head, 0), u32_at(&head, 8));

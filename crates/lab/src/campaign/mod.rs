@@ -19,4 +19,5 @@ pub mod result;
 mod spool;
 pub mod summary;
 pub mod sweep;
+mod tables;
 mod units;

@@ -3,6 +3,7 @@
 //! Inputs and seed of a flight follow from the master seed and the flight's index alone, so any part
 //! of a plan can be flown anywhere, in any order.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde_json::{Value as Json, json};
@@ -14,7 +15,7 @@ use super::random::{key, named, permuted, unit};
 use super::replay;
 use super::result::{Columns, Input};
 use super::sweep::{self, Sweep};
-use super::units;
+use super::{tables, units};
 use crate::metric;
 use crate::scenario::document::{Node, Value};
 use crate::scenario::fault::{Fault, Faults};
@@ -88,6 +89,8 @@ pub struct Campaign {
     replayed: Option<Vec<(u64, Vec<Input>)>>,
     /// For each sweep, the paths that take its value and the number that multiplies it.
     targets: Vec<Vec<(String, f64)>>,
+    /// Files that tables of the flights come from, with a hash of their numbers.
+    tables: BTreeMap<String, u64>,
 }
 
 impl Campaign {
@@ -106,7 +109,10 @@ impl Campaign {
         let resolved = scenario.resolved();
         let targets = sweeps.iter().map(|sweep| targets(sweep, &resolved, &mut faults)).collect();
         let flights = count(&sweeps, size, base.block("campaign"), &mut faults);
-        let campaign = Self { base, scenario, sweeps, choices, flights, targets, replayed: None };
+        let tables = tables::contents(&scenario).into_iter().collect();
+        let replayed = None;
+        let mut campaign =
+            Self { base, scenario, sweeps, choices, flights, replayed, targets, tables };
         campaign.check_extremes(&mut faults);
         Faults(faults).check()?;
         Ok(campaign)
@@ -241,7 +247,7 @@ impl Campaign {
             Sampling::LatinHypercube => "latin-hypercube",
             Sampling::Independent => "independent",
         };
-        json!({
+        let mut identity = json!({
             "scenario": self.name(),
             "resolved": self.scenario.resolved(),
             "flights": self.flights,
@@ -249,11 +255,15 @@ impl Campaign {
             "inputs": self.describe(),
             "metrics": self.columns().metrics,
             "replayed": self.replayed.as_ref().map(|rows| replay::hash(rows)),
-        })
+        });
+        if !self.tables.is_empty() {
+            identity["tables"] = json!(self.tables);
+        }
+        identity
     }
 
-    /// Every extreme of every input must make a flight.
-    fn check_extremes(&self, faults: &mut Vec<Fault>) {
+    /// Every extreme of every input must make a flight; what is in its tables is kept in mind.
+    fn check_extremes(&mut self, faults: &mut Vec<Fault>) {
         for (sweep, targets) in self.sweeps.iter().zip(&self.targets) {
             for value in sweep.draw.extremes() {
                 let set = |(path, factor): &(String, f64)| match &value {
@@ -261,7 +271,13 @@ impl Campaign {
                     Input::Text(text) => format!("{path}={text}"),
                 };
                 let sets: Vec<String> = targets.iter().map(set).collect();
-                let Err(found) = self.base.scenario(&sets) else { continue };
+                let found = match self.base.scenario(&sets) {
+                    Ok(scenario) => {
+                        self.tables.extend(tables::contents(&scenario));
+                        continue;
+                    }
+                    Err(found) => found,
+                };
                 for fault in found.0 {
                     let message = format!("sweep `{}` at {value}: {}", sweep.name, fault.message);
                     faults.push(Fault { message, place: Some(sweep.place.clone()), ..fault });

@@ -24,6 +24,7 @@ pub fn rows(plan: &str, inputs: &[String]) -> Result<Vec<(u64, Vec<Input>)>, Str
     {
         return Err(format!("line 1: column `{}` is no input of the scenario", extra.1));
     }
+    let named = named_columns(plan, &places);
     let mut rows = Vec::new();
     for (number, line) in lines {
         let row = cells(line);
@@ -43,14 +44,26 @@ pub fn rows(plan: &str, inputs: &[String]) -> Result<Vec<(u64, Vec<Input>)>, Str
         if seed > 9_000_000_000_000_000 {
             return Err(format!("line {number}: seed `{seed}` must be at most 9e15"));
         }
-        let input = |at: &usize| match row[*at].parse::<f64>() {
-            Ok(x) if x.is_finite() => Ok(Input::Number(x)),
-            Ok(x) => Err(format!("line {number}: `{}` = {x}: must be finite", head[*at])),
-            Err(_) => Ok(Input::Text(row[*at].clone())),
+        let input = |(at, named): (&usize, &bool)| match row[*at].parse::<f64>() {
+            Ok(x) if x.is_finite() && !named => Ok(Input::Number(x)),
+            Ok(x) if !named => Err(format!("line {number}: `{}` = {x}: must be finite", head[*at])),
+            _ => Ok(Input::Text(row[*at].clone())),
         };
-        rows.push((seed, places.iter().map(input).collect::<Result<_, _>>()?));
+        rows.push((seed, places.iter().zip(&named).map(input).collect::<Result<_, _>>()?));
     }
     if rows.is_empty() { Err("no flights".into()) } else { Ok(rows) }
+}
+
+/// Which of the columns at these places have a cell that is no number: all their cells are names then.
+fn named_columns(plan: &str, places: &[usize]) -> Vec<bool> {
+    let mut named = vec![false; places.len()];
+    for line in plan.lines().skip(1) {
+        let row = cells(line);
+        for (named, at) in named.iter_mut().zip(places) {
+            *named |= row.get(*at).is_some_and(|cell| cell.parse::<f64>().is_err());
+        }
+    }
+    named
 }
 
 /// The cells of a line; quotes as `plan.csv` writes them.
@@ -93,6 +106,10 @@ mod tests {
         let read = rows(plan, &names).expect("a good plan");
         let row = |seed, x, law: &str| (seed, vec![Input::Number(x), Input::Text(law.into())]);
         assert_eq!(read, [row(7, 1e-3, "hosm"), row(8, 2.5, "none")]);
+        // A column with a name in it has names only.
+        let plan = "index,seed,law,\"b,c\"\n0,7,0.50,1\n1,8,\"[1, 0, 0]\",2\n";
+        let read = rows(plan, &names).expect("a good plan");
+        assert_eq!(read, [row(7, 1.0, "0.50"), row(8, 2.0, "[1, 0, 0]")]);
     }
 
     #[test]

@@ -157,7 +157,16 @@ fn read_one(table: &Table, place: &Place, faults: &mut Vec<Fault>) -> Option<Swe
         match (key.as_str(), &node.value) {
             ("path", Value::Text(path)) => paths.push(path.clone()),
             ("path", Value::List(all)) => paths.extend(texts(all, faults)),
-            ("name", Value::Text(text)) => name = Some(text.clone()),
+            ("name", Value::Text(text)) => {
+                if ["index", "seed"].contains(&text.as_str()) || text.contains(char::is_control) {
+                    let message =
+                        format!("`sweep.name` = {text:?} cannot head a column of the plan");
+                    let help =
+                        "`index` and `seed` are columns of their own, and a name has one line";
+                    faults.push(Fault::new(&node.place, message).help(help));
+                }
+                name = Some(text.clone());
+            }
             ("relative", Value::Flag(flag)) => relative = *flag,
             ("path" | "name", other) => {
                 faults.push(wrong_type(&node.place, &format!("sweep.{key}"), other, "text"));

@@ -324,6 +324,10 @@ impl Loader<'_> {
 }
 
 impl BlockVisitor for Loader<'_> {
+    fn fills(&self) -> bool {
+        true
+    }
+
     fn block<S: Settings>(&mut self, key: &'static str, _: &'static str, settings: &mut S) {
         self.known.push(key);
         let tree = self.tree;

@@ -186,6 +186,10 @@ pub struct Scenario {
 
 /// Walks over the blocks of a scenario: loading, schema and manifest are one walk each.
 pub trait BlockVisitor {
+    /// Whether it fills the blocks in: a block may then take its defaults from the ones before.
+    fn fills(&self) -> bool {
+        false
+    }
     /// A block that names its law.
     fn block<S: Settings>(&mut self, key: &'static str, doc: &'static str, settings: &mut S);
     /// A list of such blocks.
@@ -208,7 +212,9 @@ impl Scenario {
     pub fn blocks(&mut self, v: &mut impl BlockVisitor) {
         v.plain("run", "Times and counts of the flight.", &mut self.run, &mut ());
         v.block("vehicle", "The vehicle.", &mut self.vehicle);
-        self.model = self.vehicle.vehicle.model();
+        if v.fills() {
+            self.model = self.vehicle.vehicle.model();
+        }
         v.plain(
             "model",
             "What the laws believe of the vehicle, where it differs.",
