@@ -26,7 +26,7 @@ const LONGEST: Duration = Duration::from_secs(30 * 24 * 3600);
 pub fn sweep(args: &Sweep, common: &Common) -> Result<(), Failure> {
     let campaign = load(&args.plan)?;
     let shard = shard(args.shard.as_deref())?;
-    let until = until(args.until_interval)?;
+    let until = until(args.until_interval, &campaign)?;
     let logs = args.logs.iter().map(|text| Which::read(text)).collect::<Result<Vec<_>, _>>()?;
     let broken = |error: io::Error| Failure::out(&args.out, &error);
     let threads = args.threads.map_or_else(cores, usize::from);
@@ -144,8 +144,12 @@ fn shard(text: Option<&str>) -> Result<(u64, u64), Failure> {
     }
 }
 
-fn until(width: Option<f64>) -> Result<Option<f64>, Failure> {
+fn until(width: Option<f64>, campaign: &Campaign) -> Result<Option<f64>, Failure> {
     match width {
+        Some(_) if campaign.counts_through() => Err(input(
+            "--until-interval: grids and lists are counted through, and their first flights stand for no others".into(),
+            "draw the inputs, or ask for more flights than there are combinations",
+        )),
         Some(width) if !(width > 0.0 && width < 1.0) => Err(input(
             format!("--until-interval {width}: must lie between 0 and 1"),
             "0.01 stops when the success probability is known to within one per cent",

@@ -151,7 +151,13 @@ fn what_cannot_be_flown_is_refused_with_advice() {
         FILE.split("[[sweep]]").next().expect("a head").replace("campaign ", "# "),
     )
     .expect("a file");
-    let cases: [(&[&str], &str); 10] = [
+    let grid = r#"sweep=[{ path = "vehicle.mass", grid = [0.5, 0.7, 300] }]"#;
+    let cases: [(&[&str], &str); 12] = [
+        (
+            &["--until-interval", "0.1", "--set", "campaign.flights=0", "--set", grid],
+            "grids and lists are counted through",
+        ),
+        (&["--set", "sweep.0.path=run.seed"], "`run.seed` cannot be swept"),
         (&["--set", "campaign.flights=1e12"], "must lie in 0 to 1e8"),
         (&["--set", "campaign.flights=1e8", "--set", "run.duration=1e4"], "would take"),
         (&["--shard", "9/8"], "must be I/N"),

@@ -123,6 +123,13 @@ impl Campaign {
         self.flights
     }
 
+    /// Whether grids and lists are counted through once at most: the first flights are a corner of them then.
+    pub fn counts_through(&self) -> bool {
+        self.replayed.is_none()
+            && self.sweeps.iter().any(|sweep| sweep.draw.count().is_some())
+            && self.flights <= combinations(&self.sweeps)
+    }
+
     /// Seed of flight `index`: 52 bits, so that a scenario file can hold it.
     pub fn seed(&self, index: u64) -> u64 {
         self.replay_of(index).map_or_else(|| key(self.master(), index) >> 12, |(seed, _)| *seed)
@@ -314,12 +321,17 @@ fn targets(sweep: &Sweep, resolved: &Json, faults: &mut Vec<Fault>) -> Vec<(Stri
     targets
 }
 
+/// Combinations of grids and lists.
+fn combinations(sweeps: &[Sweep]) -> u64 {
+    sweeps.iter().filter_map(|sweep| sweep.draw.count()).fold(1, u64::saturating_mul)
+}
+
 /// How many flights: what is asked for, or every combination.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number by rule
 fn count(sweeps: &[Sweep], size: Size<f64>, place: Option<&Node>, faults: &mut Vec<Fault>) -> u64 {
     const MOST: u64 = 100_000_000;
     let asked = size.flights as u64;
-    let cells = sweeps.iter().filter_map(|s| s.draw.count()).fold(1, u64::saturating_mul);
+    let cells = combinations(sweeps);
     let drawn = sweeps.iter().any(|s| s.draw.count().is_none());
     let fault = |message: String, help: &str| {
         match place {

@@ -191,6 +191,10 @@ fn read_one(table: &Table, place: &Place, faults: &mut Vec<Fault>) -> Option<Swe
     if paths.is_empty() {
         faults.push(Fault::new(place, "a sweep has no path").help("add path = \"vehicle.mass\""));
     }
+    if paths.iter().any(|path| path == "run.seed") {
+        let help = "every flight has a seed of its own, which follows from that of the file";
+        faults.push(Fault::new(place, "`run.seed` cannot be swept").help(help));
+    }
     if given != 1 {
         let message = format!("a sweep has {given} distributions: it takes one");
         let help = "give one of uniform, log_uniform, normal, grid, list";
