@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::disk::Disk;
@@ -93,20 +94,19 @@ impl Drive<'_> {
         let mut journal = Journal::open(self.disk, &path, &self.owner(), index.as_ref())?;
         let mut count = Count::new(self, index.iter().flat_map(Index::tallies));
         let has = |chunk: &u64| index.as_ref().is_some_and(|index| index.has(*chunk));
-        let waiting: Vec<u64> = self.chunks().filter(|chunk| !has(chunk)).collect();
+        let waiting = Mutex::new(self.chunks().filter(|chunk| !has(chunk)));
+        // A thread that broke held nothing half-done here.
+        let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
         let enough = AtomicBool::new(count.enough());
         watch(&count.progress());
-        let next = AtomicUsize::new(0);
         std::thread::scope(|scope| {
             let (send, receive) = sync_channel(2 * self.threads);
             for _ in 0..self.threads {
-                let (send, next, waiting, enough) = (send.clone(), &next, &waiting, &enough);
+                let (send, next, enough) = (send.clone(), &next, &enough);
                 scope.spawn(move || {
                     while !self.stop.load(Ordering::Relaxed) && !enough.load(Ordering::Relaxed) {
-                        let Some(chunk) = waiting.get(next.fetch_add(1, Ordering::Relaxed)) else {
-                            break;
-                        };
-                        if send.send((*chunk, self.fly_chunk(*chunk))).is_err() {
+                        let Some(chunk) = next() else { break };
+                        if send.send((chunk, self.fly_chunk(chunk))).is_err() {
                             break;
                         }
                     }

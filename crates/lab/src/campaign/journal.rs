@@ -195,7 +195,10 @@ impl Index {
         let Some(owner) = Owner::read(&header) else {
             return Err(damaged(path, 0, "the header does not have its checksum"));
         };
-        let (path, records) = (path.to_owned(), Vec::new());
+        // In one piece: growing would leave copies behind.
+        let record = HEAD as u64 + CHUNK * (9 + 8 * owner.metrics.min(1 << 20)) + 4;
+        let records = Vec::with_capacity(usize::try_from(length / record + 1).unwrap_or(0));
+        let path = path.to_owned();
         let mut index = Self { path, owner, records, end: HEADER as u64 };
         while index.read_record(&mut file, length)? {}
         index.sort()?;
