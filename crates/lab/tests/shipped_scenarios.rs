@@ -8,10 +8,12 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
+use stormpetrel_control::registry::Settings as _;
 use stormpetrel_lab::fly::{fly, on_all_cores};
-use stormpetrel_lab::scenario::Scenario;
+use stormpetrel_lab::scenario::{Scenario, load_text};
 use stormpetrel_lab::sensitivity::spread;
 use stormpetrel_lab::shipped::{SHIPPED, shipped};
+use stormpetrel_plant::vehicle::VehicleSettings;
 
 fn scenarios() -> Vec<Scenario> {
     let files = SHIPPED.iter().filter_map(|(name, _)| shipped(name));
@@ -42,6 +44,21 @@ fn val_every_flight_shows_its_expected_numbers() {
     })
     .concat();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Every preset is a vehicle that can exist, and hovers.
+#[test]
+fn every_preset_hovers() {
+    let (_, text) = SHIPPED.iter().find(|(name, _)| *name == "hover").expect("hover is shipped");
+    for name in VehicleSettings::NAMES {
+        let set = format!("vehicle={{ model = \"{name}\" }}");
+        let file = load_text("hover", "hover.toml", (*text).to_owned(), &[set]);
+        let file = file.unwrap_or_else(|faults| panic!("{name}: {faults}"));
+        let outcome = fly(&file.scenarios[0], |_, _| {});
+        assert!(outcome.failure.is_none(), "{name}: {:?}", outcome.failure);
+        let most = outcome.get("position.max").unwrap_or(f64::NAN);
+        assert!(most < 1e-9, "{name}: {most} m");
+    }
 }
 
 #[test]

@@ -48,8 +48,9 @@ const PRESETS: [Preset; 6] = [
     },
     Preset {
         name: "crazyflie",
-        doc: "Bitcraze Crazyflie 2.1, 30 g. Mass, inertia, rotors and lag as in RotorPy's crazyflie_params.py \
-(University of Pennsylvania), after Foerster, System Identification of the Crazyflie 2.0, ETH Zurich 2015; \
+        doc: "Bitcraze Crazyflie 2.1, 30 g. Mass, rotors and lag as in RotorPy's crazyflie_params.py \
+(University of Pennsylvania), moments of inertia as measured by Foerster, System Identification of the Crazyflie 2.0, \
+ETH Zurich 2015 (RotorPy's are those of no rigid body: the third exceeds the sum of the others); \
 its rotor drag 1.02506e-6 kg/rad is taken at the hover speed 1788.6 rad/s of four rotors.",
         vehicle: crazyflie,
     },
@@ -90,7 +91,7 @@ fn article() -> Vehicle<f64> {
 fn crazyflie() -> Vehicle<f64> {
     Vehicle {
         mass: 0.03,
-        inertia: Vec3::new(1.43e-5, 1.43e-5, 2.89e-5),
+        inertia: Vec3::new(1.657_171e-5, 1.665_560_2e-5, 2.926_165_2e-5),
         gravity: 9.81,
         arm: 0.043,
         thrust_coefficient: 2.3e-8,
