@@ -140,7 +140,7 @@ pub struct Sweep {
     /// Fly part I of N only, I from 1; `merge` joins the parts
     #[arg(long, value_name = "I/N", conflicts_with = "until_interval")]
     pub shard: Option<String>,
-    /// Stop once the 95 % interval of the success probability is this narrow
+    /// Stop once the 95 % interval of the success probability is this narrow; not over grids flown through once
     #[arg(long, value_name = "WIDTH")]
     pub until_interval: Option<f64>,
     /// Fly again with log and figures: worst=K, median, failures=K, every=K, separated by commas

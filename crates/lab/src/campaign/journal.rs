@@ -196,7 +196,7 @@ impl Index {
             return Err(damaged(path, 0, "the header does not have its checksum"));
         };
         // In one piece: growing would leave copies behind.
-        let record = HEAD as u64 + CHUNK * (9 + 8 * owner.metrics.min(1 << 20)) + 4;
+        let record = size(CHUNK, owner.metrics.min(1 << 20)) - HEADER as u64;
         let records = Vec::with_capacity(usize::try_from(length / record + 1).unwrap_or(0));
         let path = path.to_owned();
         let mut index = Self { path, owner, records, end: HEADER as u64 };
