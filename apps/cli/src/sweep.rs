@@ -7,8 +7,9 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
+use stormpetrel_lab::campaign::ahead::estimate;
 use stormpetrel_lab::campaign::disk::Native;
-use stormpetrel_lab::campaign::drive::{Drive, End, JOURNAL, Progress, estimate, identity};
+use stormpetrel_lab::campaign::drive::{Drive, End, JOURNAL, Progress, identity};
 use stormpetrel_lab::campaign::files::{self, Held};
 use stormpetrel_lab::campaign::journal::Index;
 use stormpetrel_lab::campaign::plan::Campaign;
@@ -29,25 +30,26 @@ pub fn sweep(args: &Sweep, common: &Common) -> Result<(), Failure> {
     let until = until(args.until_interval, &campaign)?;
     let logs = args.logs.iter().map(|text| Which::read(text)).collect::<Result<Vec<_>, _>>()?;
     let broken = |error: io::Error| Failure::out(&args.out, &error);
-    let threads = args.threads.map_or_else(cores, usize::from);
-    announce(&campaign, shard.1, threads, args, common)?;
-    let held = files::holds(&args.out, &campaign).map_err(broken)?;
-    allowed(&held, args.resume, &args.out)?;
-    fs::create_dir_all(&args.out).map_err(broken)?;
-    let _lock = lock(&args.out)?;
-    if held == Held::Nothing {
-        files::begin(&Native, &args.out, &campaign).map_err(broken)?;
-    }
-    terminal::ORDERLY.store(true, Ordering::Relaxed);
     let drive = Drive {
         campaign: &campaign,
         folder: &args.out,
         disk: &Native,
-        threads,
+        threads: args.threads.map_or_else(cores, usize::from),
         shard,
         until,
         stop: &terminal::STOP,
     };
+    announce(&drive, args, common)?;
+    let held = files::holds(&args.out, &campaign).map_err(broken)?;
+    allowed(&held, args.resume, &args.out)?;
+    if held == Held::Nothing {
+        check(&drive, common)?;
+    }
+    fs::create_dir_all(&args.out).map_err(broken)?;
+    let _lock = lock(&args.out)?;
+    // Resumed, the plan is written once more: someone may have changed it.
+    files::begin(&Native, &args.out, &campaign).map_err(broken)?;
+    terminal::ORDERLY.store(true, Ordering::Relaxed);
     let end = fly(&drive, common).map_err(broken)?;
     let End::Complete(flights) = end else {
         terminal::warn("stopped; what is flown is kept: the same command with --resume goes on");
@@ -163,16 +165,10 @@ fn cores() -> usize {
 }
 
 /// Says what the campaign will take; refuses what nobody would wait for.
-fn announce(
-    campaign: &Campaign,
-    shards: u64,
-    threads: usize,
-    args: &Sweep,
-    common: &Common,
-) -> Result<(), Failure> {
-    let flights = campaign.flights().div_ceil(shards);
-    let estimate =
-        estimate(campaign, flights, threads).map_err(|e| Failure::Input(e.to_string()))?;
+fn announce(drive: &Drive<'_>, args: &Sweep, common: &Common) -> Result<(), Failure> {
+    let Drive { campaign, threads, .. } = *drive;
+    let flights = drive.flights();
+    let estimate = estimate(campaign, flights, threads)?;
     let ticks = campaign.scenario.ticks();
     let time = duration(estimate);
     if estimate > LONGEST {
@@ -266,6 +262,15 @@ fn lock(folder: &Path) -> Result<File, Failure> {
         )),
         Err(TryLockError::Error(error)) => Err(broken(error)),
     }
+}
+
+/// Builds every flight where that is in doubt.
+fn check(drive: &Drive<'_>, common: &Common) -> Result<(), Faults> {
+    let bar = terminal::progress("checking the plan", common.quiet || common.json);
+    bar.set_length(drive.flights());
+    let checked = drive.check(&|done| bar.set_position(done));
+    bar.finish_and_clear();
+    checked
 }
 
 /// Flies with a bar that tells rate, failures and the success probability so far.

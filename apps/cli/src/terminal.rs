@@ -28,7 +28,7 @@ pub static STOP: AtomicBool = AtomicBool::new(false);
 /// possible the first interrupt asks for it, the second one leaves.
 pub fn interrupted() {
     if ORDERLY.load(Ordering::Relaxed) && !STOP.swap(true, Ordering::Relaxed) {
-        warn("\nfinishing the flights in hand; interrupt again to leave at once");
+        warn("\nfinishing what is in hand; interrupt again to leave at once");
         return;
     }
     // Held until the end: no file is made any more.

@@ -242,6 +242,43 @@ fn a_merge_writes_over_no_other_campaign() {
     }
 }
 
+/// Each input alone makes a flight at its extremes; together they may make a body that cannot be.
+#[test]
+fn a_plan_with_a_flight_that_cannot_be_is_refused_before_the_first_one() {
+    let bench = Bench::new();
+    let inertia = |deviation: &str| {
+        let axis = |axis: &str| {
+            format!("{{ path = \"vehicle.inertia.{axis}\", normal = [2.6e-3, {deviation}] }}")
+        };
+        format!("sweep=[{}, {}]", axis("x"), axis("z"))
+    };
+    let (wide, narrow) = (inertia("5e-4"), inertia("3.5e-4"));
+    let more = [&SHORT[..], &["--set", "campaign.flights=2000", "--set", &wide]].concat();
+    let refused = [["--threads", "1"], ["--threads", "2"]].map(|threads| {
+        let output = bench.run("refused", &[&more[..], &threads].concat());
+        assert_eq!(output.status.code(), Some(2), "{}", message(&output));
+        assert!(!bench.path("refused").exists());
+        message(&output)
+    });
+    assert!(refused[0].contains("of the plan: `vehicle.inertia` = ["), "{}", refused[0]);
+    assert!(refused[0].contains("one moment exceeds the sum"), "{}", refused[0]);
+    assert_eq!(refused[0], refused[1]);
+    // At four deviations in both directions there is no such body, but no flight of this plan is there.
+    let output = bench.run("flown", &[&SHORT[..], &["--set", &narrow]].concat());
+    assert!(output.status.success(), "{}", message(&output));
+}
+
+#[test]
+fn a_plan_that_someone_changed_is_written_again() {
+    let bench = Bench::new();
+    assert!(bench.run("one", &SHORT).status.success());
+    let plan = bench.path("one").join("plan.csv");
+    let written = fs::read(&plan).expect("a plan");
+    fs::write(&plan, "mine").expect("written");
+    let again = bench.run("one", &[&SHORT[..], &["--resume"]].concat());
+    assert!(again.status.success() && fs::read(&plan).expect("a plan") == written);
+}
+
 /// A plan that was written can be flown again: what are names stays names, and the report says how.
 #[test]
 fn a_plan_of_names_is_flown_again() {

@@ -6,6 +6,8 @@
 //!   max >= |e|, late maximum: the same from `run.late` on                (3)
 //! so that `max * IAE >= ISE >= IAE^2/T` for every flight (theory 1.3), which is asserted.
 
+mod distribution;
+
 use std::sync::LazyLock;
 
 use stormpetrel_control::attitude::euler::difference;
@@ -13,6 +15,8 @@ use stormpetrel_control::math::{Body, Vec3, World};
 use stormpetrel_control::real::Real;
 use stormpetrel_control::record;
 use stormpetrel_plant::flight::Tick;
+
+pub use distribution::Distribution;
 
 record! {
     /// Integrals and maxima of one error signal.
@@ -380,72 +384,6 @@ pub fn describe(name: &str) -> Option<(String, String)> {
     let named = |(signal, of): &(&About, &About)| of.name.replace('*', signal.name) == name;
     let (signal, of) = pairs.into_iter().find(named)?;
     Some((of.unit.replace('*', signal.unit), format!("{}, of the {}", of.doc, signal.doc)))
-}
-
-/// Logarithmic histogram of one error signal: 64 bins an octave from 2^-30 to 2^10.
-#[derive(Clone, Debug)]
-struct Histogram {
-    bins: Vec<u32>,
-    count: u64,
-}
-
-const OCTAVES: u64 = 40;
-const LOWEST_EXPONENT: u64 = 1023 - 30;
-
-impl Histogram {
-    fn new() -> Self {
-        Self { bins: vec![0; usize::try_from(OCTAVES * 64).unwrap_or(0)], count: 0 }
-    }
-
-    #[inline(always)]
-    fn push(&mut self, e: f64) {
-        // Exponent and the six leading bits of the mantissa number the bins.
-        let bits = (e.to_bits() & (u64::MAX >> 1)) >> 46;
-        let bin = bits.saturating_sub(LOWEST_EXPONENT << 6);
-        let last = self.bins.len() - 1;
-        let bin = usize::try_from(bin).unwrap_or(last);
-        if let Some(count) = self.bins.get_mut(if bin < last { bin } else { last }) {
-            *count += 1;
-        }
-        self.count += 1;
-    }
-
-    /// The value below which 95 % of the samples lie: the middle of its bin.
-    fn p95(&self) -> f64 {
-        let wanted = self.count - self.count / 20;
-        let mut seen = 0;
-        for (bin, count) in self.bins.iter().enumerate() {
-            seen += u64::from(*count);
-            if seen >= wanted && seen > 0 {
-                let edge = |bin: u64| f64::from_bits((bin + (LOWEST_EXPONENT << 6)) << 46);
-                let bin = bin as u64;
-                // The lowest bin holds everything down to zero.
-                return if bin == 0 { 0.0 } else { 0.5 * (edge(bin) + edge(bin + 1)) };
-            }
-        }
-        0.0
-    }
-}
-
-/// Collects the distribution of the error signals of one flight.
-#[derive(Clone, Debug)]
-pub struct Distribution(Vec<Histogram>);
-
-impl Distribution {
-    /// Nothing flown yet.
-    pub fn new(has_attitude: bool) -> Self {
-        Self(vec![Histogram::new(); if has_attitude { 8 } else { 4 }])
-    }
-
-    /// Adds the errors of one tick.
-    #[inline(always)]
-    pub fn push(&mut self, errors: &Errors<f64>) {
-        let Errors { position, axis, angle, euler, tilt, yaw } = *errors;
-        let all = [position, axis.x, axis.y, axis.z, angle, euler, tilt, yaw];
-        for (histogram, e) in self.0.iter_mut().zip(all) {
-            histogram.push(e);
-        }
-    }
 }
 
 /// All metrics of a flight under their flat names, in the order of [`names`].

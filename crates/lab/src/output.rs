@@ -12,6 +12,7 @@ use crate::scenario::Scenario;
 use crate::sensitivity::Spread;
 
 pub use folder::{Folder, Halt, halt};
+pub(crate) use refused::refuse;
 pub use refused::{Refused, advise};
 
 /// Version of the program.

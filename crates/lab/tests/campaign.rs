@@ -225,6 +225,18 @@ fn everything_that_a_flight_depends_on_makes_another_campaign() {
     let (low, high) = (route(0.5), route(0.6));
     assert_eq!(low["resolved"], high["resolved"]);
     assert_ne!(low["tables"], high["tables"]);
+
+    // A plan that is read may name files that the scenario does not.
+    let other = place.file.with_file_name("other.csv");
+    fs::copy(&file, &other).expect("a table");
+    let reference = format!("reference={{ shape = \"minimum-snap\", waypoints = {file:?} }}");
+    let sweep = format!("sweep=[{{ path = \"reference.waypoints\", list = [{file:?}] }}]");
+    let mut campaign = place.campaign(&[&reference, &sweep]);
+    let plan = format!("index,seed,reference.waypoints\n0,1,{}\n", other.display());
+    campaign.replay(&plan).expect("a good plan");
+    let identity = campaign.identity();
+    let tables = identity["tables"].as_object().expect("tables");
+    assert_eq!(tables.len(), 2);
 }
 
 /// How an operation fails.

@@ -8,7 +8,6 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
 
 use super::disk::Disk;
 use super::journal::{CHUNK, Entry, Index, Journal, Owner, Tally};
@@ -16,7 +15,9 @@ use super::plan::{Campaign, Metrics};
 use super::result::Columns;
 use super::summary::wilson;
 use crate::fly::{Outcome, fly_batch, fly_batch_position};
+use crate::output::refuse;
 use crate::scenario::Scenario;
+use crate::scenario::fault::{Fault, Faults};
 
 /// How a campaign is flown.
 #[derive(Clone, Copy, Debug)]
@@ -67,6 +68,15 @@ pub enum End {
 pub const JOURNAL: &str = "journal.bin";
 
 impl Drive<'_> {
+    /// Flights of this part of the plan.
+    pub fn flights(&self) -> u64 {
+        let of = |chunk| {
+            let rows = rows(self.campaign, chunk);
+            rows.end - rows.start
+        };
+        self.chunks().map(of).sum()
+    }
+
     /// What the journal of this part must say of itself.
     pub fn owner(&self) -> Owner {
         Owner {
@@ -86,10 +96,12 @@ impl Drive<'_> {
         let path = self.folder.join(JOURNAL);
         let index = Index::read(&path)?;
         if index.as_ref().is_some_and(|index| index.owner() != self.owner()) {
-            return Err(io::Error::other(format!(
-                "{}: belongs to another campaign, or to another part of it",
-                path.display()
-            )));
+            let message = "belongs to another campaign, or to another part of it";
+            return Err(refuse(
+                &path,
+                message,
+                "give the same --shard as before, or another --out",
+            ));
         }
         let mut journal = Journal::open(self.disk, &path, &self.owner(), index.as_ref())?;
         let mut count = Count::new(self, index.iter().flat_map(Index::tallies));
@@ -125,7 +137,7 @@ impl Drive<'_> {
     }
 
     /// The chunks of this part of the plan.
-    fn chunks(&self) -> impl Iterator<Item = u64> {
+    pub(super) fn chunks(&self) -> impl Iterator<Item = u64> {
         let (shard, shards) = self.shard;
         (0..self.campaign.flights().div_ceil(CHUNK)).filter(move |chunk| chunk % shards == shard)
     }
@@ -160,10 +172,14 @@ pub fn identity(campaign: &Campaign) -> u64 {
 }
 
 /// A flight of the plan.
-fn built(campaign: &Campaign, index: u64) -> io::Result<Scenario> {
-    campaign.flight(&campaign.inputs(index), campaign.seed(index)).map_err(|faults| {
-        let message = format!("flight {index} of the plan cannot be flown:\n{faults}");
-        io::Error::new(io::ErrorKind::InvalidInput, message)
+pub(super) fn built(campaign: &Campaign, index: u64) -> Result<Scenario, Faults> {
+    let flight = campaign.flight(&campaign.inputs(index), campaign.seed(index));
+    flight.map_err(|Faults(faults)| {
+        let told = |fault: Fault| {
+            let message = format!("flight {index} of the plan: {}", fault.message);
+            Fault { message, ..fault }
+        };
+        Faults(faults.into_iter().map(told).collect())
     })
 }
 
@@ -174,7 +190,9 @@ fn built(campaign: &Campaign, index: u64) -> io::Result<Scenario> {
 pub fn fly_rows(campaign: &Campaign, rows: std::ops::Range<u64>) -> io::Result<Vec<Entry>> {
     let mut scenarios: Vec<Scenario> = Vec::new();
     for index in rows {
-        scenarios.push(built(campaign, index)?);
+        let refused =
+            |faults: Faults| io::Error::new(io::ErrorKind::InvalidInput, faults.to_string());
+        scenarios.push(built(campaign, index).map_err(refused)?);
     }
     let outcomes = match campaign.choices.metrics {
         Metrics::All => fly_batch(&scenarios),
@@ -234,12 +252,8 @@ struct Count {
 
 impl Count {
     fn new(drive: &Drive<'_>, tallies: impl Iterator<Item = (u64, Tally)>) -> Self {
-        let flights = drive.chunks().map(|chunk| {
-            let rows = rows(drive.campaign, chunk);
-            rows.end - rows.start
-        });
         let mut count = Self {
-            flights: flights.sum(),
+            flights: drive.flights(),
             until: drive.until,
             tallies: BTreeMap::new(),
             done: Tally::default(),
@@ -286,34 +300,4 @@ impl Count {
             None => End::Stopped,
         }
     }
-}
-
-/// Flights of a plan that are built before anything is written: the most common mistake in a sweep shows.
-const LOOK_AHEAD: u64 = 256;
-
-/// Wall time of a campaign on so many threads, reckoned from eight of its flights over at most 2,000 ticks.
-///
-/// # Errors
-/// Where one of the first flights cannot be built.
-pub fn estimate(campaign: &Campaign, flights: u64, threads: usize) -> io::Result<Duration> {
-    const TICKS: f64 = 2000.0;
-    let mut scenarios = Vec::new();
-    for index in 0..if flights < LOOK_AHEAD { flights } else { LOOK_AHEAD } {
-        let mut scenario = built(campaign, index)?;
-        let longest = TICKS * scenario.run.control_step;
-        if scenario.run.duration > longest {
-            scenario.run.duration = longest;
-        }
-        if index < 8 {
-            scenarios.push(scenario);
-        }
-    }
-    let begin = Instant::now();
-    let ticks: u64 = scenarios.iter().map(Scenario::ticks).sum();
-    fly_batch(&scenarios);
-    let per_tick = begin.elapsed().as_secs_f64() / if ticks > 0 { ticks as f64 } else { 1.0 };
-    let whole = flights as f64 * campaign.scenario.ticks() as f64 * per_tick / threads as f64;
-    // Ten thousand years are enough to say no.
-    let seconds = if whole < 3e11 { whole } else { 3e11 };
-    Ok(Duration::from_secs_f64(seconds))
 }

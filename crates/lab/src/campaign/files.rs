@@ -14,7 +14,7 @@ use super::plan::Campaign;
 use super::report::{Story, html};
 use super::result::{Columns, Row};
 use super::summary::Summary;
-use crate::output::{REVISION, VERSION};
+use crate::output::{REVISION, VERSION, refuse};
 
 /// What the campaign is: written first, compared before it is resumed.
 pub const CAMPAIGN: &str = "campaign.json";
@@ -93,8 +93,9 @@ pub fn holds(folder: &Path, campaign: &Campaign) -> io::Result<Held> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Held::Nothing),
         Err(error) => return Err(error),
     };
-    let found: Json = serde_json::from_str(&text)
-        .map_err(|error| io::Error::other(format!("{}: {error}", path.display())))?;
+    let found: Json = serde_json::from_str(&text).map_err(|error| {
+        refuse(&path, &error.to_string(), "remove the folder, or give another --out")
+    })?;
     let ours = about(campaign);
     Ok(if found["campaign"] != ours["campaign"] {
         Held::Another

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use super::disk::{Disk, Sink};
 use super::result::Row;
 use crate::fly::Failure;
+use crate::output::refuse;
 use stormpetrel_plant::flight::Cause;
 
 /// Flights in a record.
@@ -164,10 +165,8 @@ fn only_zeros(file: &mut impl Read) -> io::Result<bool> {
 
 /// A message about a journal that cannot be used.
 fn damaged(path: &Path, at: u64, what: &str) -> io::Error {
-    io::Error::other(format!(
-        "{}: damaged at byte {at}: {what}; what it holds cannot be trusted. Restore it from a copy, or remove the folder and fly again",
-        path.display()
-    ))
+    let message = format!("damaged at byte {at}: {what}; what it holds cannot be trusted");
+    refuse(path, &message, "restore it from a copy, or remove the folder and fly again")
 }
 
 impl Index {

@@ -3,6 +3,7 @@
 //! A [`result::Row`] is what one flight came to. Rows are made in any order on any thread, kept in a
 //! journal, and written in the order of their index: the files do not depend on how they were made.
 
+pub mod ahead;
 pub mod disk;
 pub mod drive;
 #[cfg(feature = "parquet")]

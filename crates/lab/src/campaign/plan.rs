@@ -3,7 +3,7 @@
 //! Inputs and seed of a flight follow from the master seed and the flight's index alone, so any part
 //! of a plan can be flown anywhere, in any order.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde_json::{Value as Json, json};
@@ -146,6 +146,7 @@ impl Campaign {
     /// What is wrong with the plan, with its line.
     pub fn replay(&mut self, plan: &str) -> Result<(), String> {
         let rows = replay::rows(plan, &self.columns().inputs)?;
+        self.keep_tables(&rows);
         self.flights = rows.len() as u64;
         self.replayed = Some(rows);
         Ok(())
@@ -269,10 +270,41 @@ impl Campaign {
         identity
     }
 
+    /// Keeps in mind what is in the tables that these inputs name.
+    fn keep_tables(&mut self, rows: &[(u64, Vec<Input>)]) {
+        let mut seen = BTreeSet::new();
+        for (seed, inputs) in rows {
+            let texts = inputs.iter().filter(|input| matches!(input, Input::Text(_)));
+            let new = texts.filter(|text| seen.insert(text.to_string())).count() > 0;
+            // One that cannot be built is told of before it is flown.
+            if let Some(scenario) = new.then(|| self.flight(inputs, *seed)).and_then(Result::ok) {
+                self.tables.extend(tables::contents(&scenario));
+            }
+        }
+    }
+
+    /// Whether every combination of the inputs' extreme values makes a flight; not if there are too many to
+    /// try, nor for a plan that was read.
+    pub(super) fn corners_fly(&self) -> bool {
+        const MOST: usize = 4096;
+        let extremes: Vec<_> = self.sweeps.iter().map(|sweep| sweep.draw.extremes()).collect();
+        let corners = extremes.iter().map(Vec::len).fold(1, usize::saturating_mul);
+        let flies = |corner: usize| {
+            let mut rest = corner;
+            let inputs = extremes.iter().map(|values| {
+                let at = rest % values.len();
+                rest /= values.len();
+                values[at].clone()
+            });
+            self.flight(&inputs.collect::<Vec<_>>(), self.seed(0)).is_ok()
+        };
+        self.replayed.is_none() && corners <= MOST && (0..corners).all(flies)
+    }
+
     /// Every extreme of every input must make a flight; what is in its tables is kept in mind.
     fn check_extremes(&mut self, faults: &mut Vec<Fault>) {
         for (sweep, targets) in self.sweeps.iter().zip(&self.targets) {
-            for value in sweep.draw.extremes() {
+            for value in sweep.draw.extremes().into_iter().chain(sweep.draw.between()) {
                 let set = |(path, factor): &(String, f64)| match &value {
                     Input::Number(x) => format!("{path}={:?}", x * factor),
                     Input::Text(text) => format!("{path}={text}"),

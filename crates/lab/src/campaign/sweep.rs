@@ -83,21 +83,25 @@ impl Draw {
         }
     }
 
-    /// The extreme values, to be checked beforehand, and one between them: a setting that takes whole
-    /// numbers only may take the extremes and not what lies between.
+    /// The extreme values; every value where there are no others.
     pub fn extremes(&self) -> Vec<Input> {
-        let between = Input::Number(self.at(BETWEEN));
         match self {
-            Self::Uniform(low, high) | Self::LogUniform(low, high) => {
-                vec![Input::Number(*low), Input::Number(*high), between]
-            }
-            Self::Grid(low, high, _) => {
-                vec![Input::Number(*low), Input::Number(*high), self.cell(1)]
+            Self::Uniform(low, high) | Self::LogUniform(low, high) | Self::Grid(low, high, _) => {
+                vec![Input::Number(*low), Input::Number(*high)]
             }
             Self::Normal(mean, sigma) => {
-                vec![Input::Number(mean - 4.0 * sigma), Input::Number(mean + 4.0 * sigma), between]
+                vec![Input::Number(mean - 4.0 * sigma), Input::Number(mean + 4.0 * sigma)]
             }
             Self::List(values) => values.clone(),
+        }
+    }
+
+    /// A value between the extremes, where there are such.
+    pub fn between(&self) -> Option<Input> {
+        match self {
+            Self::Grid(..) => Some(self.cell(1)),
+            Self::List(_) => None,
+            _ => Some(Input::Number(self.at(BETWEEN))),
         }
     }
 

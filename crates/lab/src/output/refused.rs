@@ -22,7 +22,7 @@ impl fmt::Display for Refused {
 impl std::error::Error for Refused {}
 
 /// A path that cannot be used.
-pub(super) fn refuse(path: &Path, message: &str, help: &str) -> io::Error {
+pub(crate) fn refuse(path: &Path, message: &str, help: &str) -> io::Error {
     let (path, message, help) = (path.to_owned(), message.to_owned(), help.to_owned());
     io::Error::other(Refused { path, message, help })
 }
@@ -39,7 +39,7 @@ pub fn advise(path: &Path, error: &io::Error) -> io::Error {
         }
         ErrorKind::ReadOnlyFilesystem => "give an --out that can be written",
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-            "make room, raise run.log_every, or give an --out with more room"
+            "make room, or give an --out with more room; with run.log_every a log takes less"
         }
         ErrorKind::InvalidFilename => "give a shorter name, without special characters",
         ErrorKind::InvalidInput => {
