@@ -74,6 +74,7 @@ struct Seat {
     row: usize,
     /// Tick of the batch at which the flight is over.
     end: u64,
+    distribution: Distribution,
 }
 
 /// Flights that share the lanes of one scalar.
@@ -90,7 +91,7 @@ struct Batch<T, const N: usize> {
     settings: [Setting<T>; N],
     /// One for each lane, group after group.
     seats: Vec<Option<Seat>>,
-    /// One for each seat.
+    /// Left behind by flights that are over.
     distributions: Vec<Distribution>,
     /// Tick at which a waiting flight can board.
     until: u64,
@@ -105,7 +106,7 @@ impl<T: Real<Scalar = f64>, const N: usize> Batch<T, N> {
             groups: [group; N],
             settings: [Setting { has_attitude: attitude, ..setting(scenario) }; N],
             seats: (0..N * T::LANES).map(|_| None).collect(),
-            distributions: (0..N * T::LANES).map(|_| Distribution::default()).collect(),
+            distributions: Vec::new(),
             until: u64::MAX,
         }
     }
@@ -141,8 +142,9 @@ impl<T: Real<Scalar = f64>, const N: usize> Batch<T, N> {
             own.late.set_lane(lane, late);
             own.gravity.set_lane(lane, gravity);
             group.taken.set_lane(lane, 1.0);
-            self.distributions[place].clear(has_attitude && own.has_attitude);
-            *seat = Some(Seat { row, end: now + scenario.ticks() });
+            let mut distribution = self.distributions.pop().unwrap_or_default();
+            distribution.clear(has_attitude && own.has_attitude);
+            *seat = Some(Seat { row, end: now + scenario.ticks(), distribution });
         }
     }
 
@@ -157,10 +159,11 @@ impl<T: Real<Scalar = f64>, const N: usize> Batch<T, N> {
             group.flight.alive.set_lane(lane, 0.0);
             let flight: Flight<f64> = group.flight.pick_lane(lane);
             let outcome = Outcome {
-                metrics: metrics(&group.sums.pick_lane(lane), &self.distributions[place]),
+                metrics: metrics(&group.sums.pick_lane(lane), &seat.distribution),
                 failure: failure(flight.cause, flight.flown, flight.control_step),
             };
             left.push((seat.row, outcome));
+            self.distributions.push(seat.distribution);
         }
         left
     }
@@ -174,7 +177,7 @@ impl<T: Real<Scalar = f64>, const N: usize> Work for Segment<'_, T, N> {
 
     #[inline(always)]
     fn run(self) {
-        let Batch { groups: fleet, settings, seats, distributions, until } = self.0;
+        let Batch { groups: fleet, settings, seats, until, .. } = self.0;
         // A copy of what changes at every tick: what others may reach does not stay in registers.
         let mut groups = *fleet;
         for seat in seats.iter().flatten() {
@@ -191,11 +194,8 @@ impl<T: Real<Scalar = f64>, const N: usize> Work for Segment<'_, T, N> {
                 let tick = flight.decide();
                 let errors = sums.push(&tick, &settings[k], flight.alive);
                 for lane in 0..T::LANES {
-                    let place = k * T::LANES + lane;
-                    if let (Some(Some(_)), Some(own)) =
-                        (seats.get(place), distributions.get_mut(place))
-                    {
-                        own.push(&errors.pick_lane(lane));
+                    if let Some(Some(seat)) = seats.get_mut(k * T::LANES + lane) {
+                        seat.distribution.push(&errors.pick_lane(lane));
                     }
                 }
                 flight.advance(&tick);

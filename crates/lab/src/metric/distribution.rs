@@ -31,11 +31,10 @@ impl Distribution {
     }
 }
 
-/// Logarithmic histogram of one error signal: 64 bins an octave from 2^-30 to 2^10. A flight meets few of the
-/// octaves, so each has memory from its first sample on.
+/// Logarithmic histogram of one error signal: 64 bins an octave from 2^-30 to 2^10.
 #[derive(Debug)]
 pub(super) struct Histogram {
-    octaves: [Option<Box<[u32; BINS]>>; OCTAVES],
+    bins: Vec<u32>,
     count: u64,
 }
 
@@ -45,27 +44,24 @@ const LOWEST_EXPONENT: u64 = 1023 - 30;
 
 impl Histogram {
     fn new() -> Self {
-        Self { octaves: [const { None }; OCTAVES], count: 0 }
+        Self { bins: vec![0; OCTAVES * BINS], count: 0 }
     }
 
-    /// Forgets the samples and keeps the memory.
     fn clear(&mut self) {
-        for octave in self.octaves.iter_mut().flatten() {
-            octave.fill(0);
-        }
+        self.bins.fill(0);
         self.count = 0;
     }
 
     #[inline(always)]
     fn push(&mut self, e: f64) {
         // Exponent and the six leading bits of the mantissa number the bins.
-        const LAST: usize = OCTAVES * BINS - 1;
         let bits = (e.to_bits() & (u64::MAX >> 1)) >> 46;
         let bin = bits.saturating_sub(LOWEST_EXPONENT << 6);
-        let bin = usize::try_from(bin).unwrap_or(LAST);
-        let bin = if bin < LAST { bin } else { LAST };
-        let octave = self.octaves[bin / BINS].get_or_insert_with(|| Box::new([0; BINS]));
-        octave[bin % BINS] += 1;
+        let last = self.bins.len() - 1;
+        let bin = usize::try_from(bin).unwrap_or(last);
+        if let Some(count) = self.bins.get_mut(if bin < last { bin } else { last }) {
+            *count += 1;
+        }
         self.count += 1;
     }
 
@@ -73,8 +69,13 @@ impl Histogram {
     pub fn p95(&self) -> f64 {
         let wanted = self.count - self.count / 20;
         let mut seen = 0;
-        for (octave, bins) in self.octaves.iter().enumerate() {
-            let Some(bins) = bins else { continue };
+        for (octave, bins) in self.bins.chunks(BINS).enumerate() {
+            let whole = seen + bins.iter().map(|count| u64::from(*count)).sum::<u64>();
+            // Not in this octave.
+            if whole < wanted {
+                seen = whole;
+                continue;
+            }
             for (bin, count) in bins.iter().enumerate() {
                 seen += u64::from(*count);
                 if seen >= wanted && seen > 0 {
