@@ -1,5 +1,8 @@
 //! `sweep` and `merge`: campaigns.
 
+mod answer;
+mod logs;
+
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -13,9 +16,11 @@ use stormpetrel_lab::campaign::drive::{Drive, End, JOURNAL, Progress, identity};
 use stormpetrel_lab::campaign::files::{self, Held};
 use stormpetrel_lab::campaign::journal::Index;
 use stormpetrel_lab::campaign::plan::Campaign;
-use stormpetrel_lab::campaign::summary::{Summary, wilson};
-use stormpetrel_lab::reproduce::Table;
+use stormpetrel_lab::campaign::summary::wilson;
 use stormpetrel_lab::scenario::fault::{Fault, Faults};
+
+use answer::conclude;
+use logs::{Which, refly};
 
 use crate::args::{Common, Merge, Plan, Sweep};
 use crate::{Failure, terminal};
@@ -296,162 +301,4 @@ fn tell(bar: &ProgressBar, progress: &Progress, begin: Instant) {
         interval.low,
         interval.high
     ));
-}
-
-/// Writes results, summary and report, and prints the answer.
-fn conclude(
-    campaign: &Campaign,
-    plan: &Plan,
-    out: &Path,
-    parts: &[Index],
-    flights: u64,
-    common: &Common,
-) -> Result<(), Failure> {
-    let broken = |error: io::Error| Failure::out(out, &error);
-    let summary = files::finish(&Native, out, campaign, parts, flights).map_err(broken)?;
-    let command = |sets: &[String]| command("run", plan, sets);
-    let mut again = self::command("sweep", plan, &[]);
-    if let Some(path) = &plan.drawn {
-        again += &format!(" --plan {}", word(&path.to_string_lossy()));
-    }
-    files::report(&Native, out, campaign, &summary, &command, &again).map_err(broken)?;
-    if common.json {
-        return terminal::print_json(&files::summary_json(campaign, &summary));
-    }
-    if !common.quiet {
-        print(campaign, &summary, &command, out);
-    }
-    Ok(())
-}
-
-/// The command that flies the file with these settings again.
-fn command(what: &str, plan: &Plan, sets: &[String]) -> String {
-    let mut words = vec![format!("stormpetrel {what}"), word(&plan.file.to_string_lossy())];
-    words.extend(plan.variant.iter().map(|variant| format!("--variant {}", word(variant))));
-    words.extend(plan.sets.iter().chain(sets).map(|set| format!("--set {}", word(set))));
-    words.join(" ")
-}
-
-/// As a shell takes it for one word.
-fn word(text: &str) -> String {
-    let plain = |letter: char| letter.is_ascii_alphanumeric() || "_-./=:,+@%".contains(letter);
-    if !text.is_empty() && text.chars().all(plain) {
-        text.to_owned()
-    } else {
-        format!("'{}'", text.replace('\'', "'\\''"))
-    }
-}
-
-fn print(
-    campaign: &Campaign,
-    summary: &Summary,
-    command: &dyn Fn(&[String]) -> String,
-    out: &Path,
-) {
-    let (share, interval) = summary.success();
-    terminal::say(&format!(
-        "{} of {} flights succeeded: {:.2} %, 95 % interval {:.2} to {:.2} %",
-        summary.flown(),
-        summary.flights(),
-        100.0 * share,
-        100.0 * interval.low,
-        100.0 * interval.high
-    ));
-    for (cause, count) in summary.failures() {
-        terminal::say(&format!("  {count} failed: {}", cause.describe()));
-    }
-    let rows = summary.correlations().iter().map(|c| {
-        // One of the two never changes: no correlation.
-        let rank = if c.rank.is_finite() { format!("{:+.3}", c.rank) } else { "-".into() };
-        vec![c.input.clone(), c.with.to_owned(), rank, c.flights.to_string()]
-    });
-    let table = Table {
-        title: "What goes with what (Spearman's rank correlation)".into(),
-        head: ["input", "with", "rank", "flights"].map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        ..Table::default()
-    };
-    terminal::print_table(&table, terminal::width());
-    if let Some(worst) = summary.worst().first() {
-        terminal::say("\nworst flight, to fly it again:");
-        terminal::say(&format!("  {}", command(&campaign.sets(&worst.inputs, worst.seed))));
-    }
-    let written = [files::RESULTS, files::SUMMARY, files::PLAN, files::REPORT].join(", ");
-    terminal::say(&format!("\nwritten to {}: {written}", out.display()));
-}
-
-/// Flights that are flown again with a log.
-enum Which {
-    Worst(usize),
-    Median,
-    Failures(usize),
-    Every(u64),
-}
-
-impl Which {
-    fn read(text: &str) -> Result<Self, Failure> {
-        let (name, number) = text.split_once('=').map_or((text, None), |(n, k)| (n, Some(k)));
-        let count = number.and_then(|k| k.parse::<usize>().ok()).filter(|k| (1..=1000).contains(k));
-        match (name, number.is_some(), count) {
-            ("worst", true, Some(k)) if k <= files::WORST => Ok(Self::Worst(k)),
-            ("median", false, _) => Ok(Self::Median),
-            ("failures", true, Some(k)) => Ok(Self::Failures(k)),
-            ("every", true, Some(k)) => Ok(Self::Every(k as u64)),
-            _ => Err(input(
-                format!("--logs {text}: unknown"),
-                "worst=K with K up to 10, median, failures=K or every=K with K up to 1000",
-            )),
-        }
-    }
-}
-
-/// Flies the chosen flights again, each into a folder of its own with log and figures.
-fn refly(
-    campaign: &Campaign,
-    out: &Path,
-    parts: &[Index],
-    flights: u64,
-    logs: &[Which],
-) -> io::Result<()> {
-    if logs.is_empty() {
-        return Ok(());
-    }
-    for index in chosen(campaign, parts, flights, logs)? {
-        let scenario = campaign
-            .flight(&campaign.inputs(index), campaign.seed(index))
-            .map_err(|faults| io::Error::other(faults.to_string()))?;
-        let folder = stormpetrel_lab::output::Folder::new(&out.join(format!("flights/{index}")))?;
-        crate::run::fly_into(&folder, "", scenario, &ProgressBar::hidden())?;
-        folder.publish()?;
-    }
-    Ok(())
-}
-
-fn chosen(
-    campaign: &Campaign,
-    parts: &[Index],
-    flights: u64,
-    logs: &[Which],
-) -> io::Result<std::collections::BTreeSet<u64>> {
-    let mut summary = Summary::new(&campaign.columns(), files::WORST);
-    let mut failed = Vec::new();
-    files::each_row(campaign, parts, flights, &mut |row| {
-        summary.push(row);
-        if row.failure.is_some() && failed.len() < 1000 {
-            failed.push(row.index);
-        }
-        Ok(())
-    })?;
-    let mut chosen = std::collections::BTreeSet::new();
-    for which in logs {
-        match which {
-            Which::Worst(k) => chosen.extend(summary.worst().iter().take(*k).map(|row| row.index)),
-            Which::Median => chosen.extend(summary.median().map(|row| row.index)),
-            Which::Failures(k) => chosen.extend(failed.iter().take(*k)),
-            Which::Every(k) => {
-                chosen.extend((0..flights).step_by(usize::try_from(*k).unwrap_or(1)));
-            }
-        }
-    }
-    Ok(chosen)
 }

@@ -25,6 +25,8 @@ use super::spool::Spool;
 pub const GROUP: usize = 131_072;
 /// Bytes of the distinct values of a column in a group, beyond which they are not gathered any more.
 const DICTIONARY: usize = 1 << 16;
+/// Bytes of a page of a column, which is put together in memory.
+const DATA: usize = 1 << 15;
 /// Named in the file in place of the library and its version, which would change the bytes.
 const CREATED_BY: &str = "stormpetrel";
 
@@ -274,6 +276,8 @@ fn properties(columns: &[Column], about: Vec<KeyValue>) -> WriterPropertiesPtr {
         .set_statistics_enabled(EnabledStatistics::None)
         .set_offset_index_disabled(true)
         .set_dictionary_page_size_limit(DICTIONARY)
+        .set_data_page_size_limit(DATA)
+        .set_write_batch_size(256)
         .set_key_value_metadata((!about.is_empty()).then_some(about))
         .set_max_row_group_row_count(Some(GROUP));
     for column in columns {
