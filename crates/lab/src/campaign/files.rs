@@ -203,6 +203,9 @@ pub fn report(
 ) -> io::Result<()> {
     let refly = |row: &Row| (row.clone(), command(&campaign.sets(&row.inputs, row.seed)));
     let worst: Vec<(Row, String)> = summary.worst().iter().map(refly).collect();
+    let median = summary
+        .median()
+        .map(|row| command(&campaign.sets(&campaign.inputs(row.index), campaign.seed(row.index))));
     let page = html(&Story {
         title: &campaign.scenario.title,
         about: &campaign.scenario.about,
@@ -210,6 +213,7 @@ pub fn report(
         inputs: &campaign.describe(),
         units: &campaign.units(),
         summary,
+        median: median.as_deref(),
         worst: &worst,
         command: again,
     });

@@ -143,10 +143,10 @@ pub struct Index {
 /// Where a chunk stands, and what it came to. A long campaign has many of them.
 #[derive(Clone, Copy, Debug)]
 struct Record {
-    chunk: u64,
     begin: u64,
-    size: u32,
-    good: u32,
+    chunk: u32,
+    flights: u16,
+    good: u16,
 }
 
 /// Whether nothing else is left to read.
@@ -223,9 +223,15 @@ impl Index {
         if length - begin < u64::from(size) + 4 {
             return Ok(false);
         }
-        let mut record = Record { chunk, begin, size, good: 0 };
+        let (whole, each) = (size as usize, flight_size(self.metrics()));
+        let (Ok(chunk), Ok(flights), 0) =
+            (u32::try_from(chunk), u16::try_from(whole / each), whole % each)
+        else {
+            return Err(damaged(&self.path, at, "a record that no campaign writes"));
+        };
+        let mut record = Record { begin, chunk, flights, good: 0 };
         let entries = self.flights(&record, file)?;
-        record.good = entries.iter().map(|entry| u32::from(entry.failure.is_none())).sum();
+        record.good = entries.iter().map(|entry| u16::from(entry.failure.is_none())).sum();
         self.records.push(record);
         self.end = begin + u64::from(size) + 4;
         Ok(true)
@@ -245,7 +251,7 @@ impl Index {
 
     /// The flights of a record, at which `file` stands.
     fn flights(&self, record: &Record, file: &mut impl Read) -> io::Result<Vec<Entry>> {
-        let size = record.size as usize;
+        let size = usize::from(record.flights) * flight_size(self.metrics());
         let mut payload = vec![0; size + 4];
         file.read_exact(&mut payload)?;
         if crc32fast::hash(&payload[..size]) != u32_at(&payload, size) {
@@ -259,15 +265,16 @@ impl Index {
     }
 
     fn find(&self, chunk: u64) -> Option<&Record> {
-        let at = self.records.binary_search_by_key(&chunk, |record| record.chunk).ok()?;
+        let at =
+            self.records.binary_search_by_key(&chunk, |record| u64::from(record.chunk)).ok()?;
         self.records.get(at)
     }
 
     /// The chunks in their order, and what each came to.
     pub fn tallies(&self) -> impl Iterator<Item = (u64, Tally)> {
-        let flown = |record: &Record| u64::from(record.size) / flight_size(self.metrics()) as u64;
-        self.records.iter().map(move |record| {
-            (record.chunk, Tally { flown: flown(record), good: u64::from(record.good) })
+        self.records.iter().map(|record| {
+            let (flown, good) = (u64::from(record.flights), u64::from(record.good));
+            (u64::from(record.chunk), Tally { flown, good })
         })
     }
 

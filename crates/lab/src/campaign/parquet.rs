@@ -22,7 +22,7 @@ use super::spool::Spool;
 
 /// Flights in one row group. What a group takes in the foot of the file stays in memory until the end, so
 /// there should be few of them.
-pub const GROUP: usize = 131_072;
+pub const GROUP: usize = 1 << 18;
 /// Bytes of the distinct values of a column in a group, beyond which they are not gathered any more.
 const DICTIONARY: usize = 1 << 16;
 /// Bytes of a page of a column, which is put together in memory.

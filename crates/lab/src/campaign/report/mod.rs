@@ -26,6 +26,8 @@ pub struct Story<'a> {
     pub units: &'a [String],
     /// What came of it.
     pub summary: &'a Summary,
+    /// The command that flies the median flight again, where there is one.
+    pub median: Option<&'a str>,
     /// The worst flights, the worst first, each with the command that flies it again.
     pub worst: &'a [(Row, String)],
     /// The command that flies the campaign again.
@@ -41,7 +43,7 @@ pub fn html(story: &Story) -> String {
     page.push_str(STYLE);
     flown(&mut page, story);
     success(&mut page, story.summary);
-    distributions(&mut page, story.summary);
+    distributions(&mut page, story);
     dependence::correlations(&mut page, story.summary);
     dependence::settings(&mut page, story);
     worst(&mut page, story);
@@ -141,7 +143,8 @@ fn with_unit(metric: &str) -> String {
     describe(metric).map_or_else(|| metric.to_owned(), |(unit, _)| format!("{metric} ({unit})"))
 }
 
-fn distributions(page: &mut String, summary: &Summary) {
+fn distributions(page: &mut String, story: &Story) {
+    let summary = story.summary;
     if summary.flown() == 0 {
         return;
     }
@@ -169,12 +172,13 @@ fn distributions(page: &mut String, summary: &Summary) {
     }
     let head = ["metric", "least", "5 %", "median", "95 %", "largest"];
     page::table(page, &texts(&head), &rows);
-    if let Some(row) = summary.median() {
-        let text = format!(
-            "The flight with the median {SCORE} is number {}, seed {}. Least and largest are those of the flights looked at.",
-            row.index, row.seed
+    page::note(page, "Least and largest are those of the flights looked at.");
+    if let (Some(row), Some(command)) = (summary.median(), story.median) {
+        let (index, command) = (row.index, escape(command));
+        let _ = writeln!(
+            page,
+            "<p>The flight with the median {SCORE} is number {index}:</p>\n<pre>{command}</pre>"
         );
-        page::note(page, &text);
     }
     page.push_str(&drawings);
 }

@@ -71,6 +71,7 @@ fn page(flights: u64) -> String {
         inputs: &inputs,
         units: &texts(&["m/s", "kg", "s"]),
         summary: &summary,
+        median: Some("stormpetrel run scenarios/gusts.toml --set run.seed=11"),
         worst: &worst,
         command: "stormpetrel campaign scenarios/gusts.toml --out results/gusts",
     })
@@ -90,6 +91,8 @@ fn the_page_tells_the_whole_story() {
         ">wind.speed (m/s)<",
         "rate/indi",
         "--set run.seed=",
+        "with the median position.iae is number",
+        "<pre>stormpetrel run scenarios/gusts.toml --set run.seed=11</pre>",
         "stormpetrel campaign scenarios/gusts.toml",
     ] {
         assert!(page.contains(wanted), "{wanted}");
@@ -124,6 +127,7 @@ fn odd_campaigns_have_a_page_too() {
         inputs: &[],
         units: &[],
         summary: &summary,
+        median: None,
         worst: &[],
         command: "",
     };

@@ -25,7 +25,6 @@ pub(super) struct Sample {
 #[derive(Clone, Copy, Debug)]
 struct Flight {
     index: u64,
-    seed: u64,
     failed: bool,
 }
 
@@ -34,8 +33,6 @@ struct Flight {
 pub struct Sampled<'a> {
     /// Position in the plan, from zero.
     pub index: u64,
-    /// Seed of the flight's random draws.
-    pub seed: u64,
     /// Whether it ended early.
     pub failed: bool,
     values: &'a [f64],
@@ -88,7 +85,7 @@ impl Sample {
             return;
         }
         let failed = row.failure.is_some();
-        self.flights.push(Flight { index: row.index, seed: row.seed, failed });
+        self.flights.push(Flight { index: row.index, failed });
         for (texts, input) in self.texts.iter_mut().zip(&row.inputs) {
             self.values.push(match input {
                 Input::Number(x) => *x,
@@ -125,7 +122,6 @@ impl Sample {
         let width = self.width();
         Some(Sampled {
             index: flight.index,
-            seed: flight.seed,
             failed: flight.failed,
             values: &self.values[at * width..(at + 1) * width],
             texts: &self.texts,
@@ -201,7 +197,7 @@ mod tests {
             let x = index as f64;
             let row = Row {
                 index,
-                seed: index + 7,
+                seed: 0,
                 inputs: vec![Input::Text(law(index).into()), Input::Number(0.5 * x)],
                 failure: (index % 2 == 1).then_some(Failure { time: x, cause: Cause::Tilt }),
                 metrics: vec![],
@@ -214,7 +210,7 @@ mod tests {
             assert_eq!((row.text(0), row.number(0)), (Some(law(row.index)), None));
             assert_eq!((row.text(1), row.number(1)), (None, Some(0.5 * x)));
             assert_eq!((row.metric(0), row.metric(1), row.metric(2)), (Some(2.0 * x), None, None));
-            assert_eq!((row.seed, row.failed), (row.index + 7, row.index % 2 == 1));
+            assert_eq!(row.failed, row.index % 2 == 1);
         }
     }
 
