@@ -69,6 +69,8 @@ pub fn estimate(campaign: &Campaign, flights: u64, threads: usize) -> Result<Dur
         }
         scenarios.push(scenario);
     }
+    // What a first flight waits for, such as memory, a campaign does not wait for again.
+    fly_batch(&scenarios);
     let begin = Instant::now();
     let ticks: u64 = scenarios.iter().map(Scenario::ticks).sum();
     fly_batch(&scenarios);
