@@ -263,6 +263,18 @@ fn a_plan_with_a_flight_that_cannot_be_is_refused_before_the_first_one() {
     assert!(refused[0].contains("of the plan: `vehicle.inertia` = ["), "{}", refused[0]);
     assert!(refused[0].contains("one moment exceeds the sum"), "{}", refused[0]);
     assert_eq!(refused[0], refused[1]);
+    // Extremes divide the duration, a value of the grid between them does not.
+    let steps = r#"sweep=[{ path = "run.control_step", grid = [0.001, 0.004, 4] }, { path = "vehicle.mass", grid = [0.5, 0.7, 32] }]"#;
+    let more = [&SHORT[..], &["--set", "campaign.flights=0", "--set", steps]].concat();
+    let output = bench.run("refused", &more);
+    assert_eq!(output.status.code(), Some(2), "{}", message(&output));
+    assert!(message(&output).contains("flight 64 of the plan"), "{}", message(&output));
+    assert!(!bench.path("refused").exists());
+    // Whole numbers of a grid stay whole.
+    let steps = r#"sweep=[{ path = "run.substeps", grid = [1, 10, 10] }]"#;
+    let more = [&SHORT[..], &["--set", "campaign.flights=0", "--set", steps]].concat();
+    let output = bench.run("whole", &more);
+    assert!(output.status.success(), "{}", message(&output));
     // At four deviations in both directions there is no such body, but no flight of this plan is there.
     let output = bench.run("flown", &[&SHORT[..], &["--set", &narrow]].concat());
     assert!(output.status.success(), "{}", message(&output));

@@ -14,9 +14,9 @@ use crate::scenario::fault::Faults;
 impl Drive<'_> {
     /// Builds every flight of this part of the plan; `watch` is told how many are done.
     ///
-    /// Nothing is built where all combinations of the inputs' extreme values make a flight: what forbids
-    /// one, such as moments of inertia that no body has, grows or falls with each input, so that what lies
-    /// between makes a flight too.
+    /// Nothing is built where all combinations of the inputs' extreme values, and of all those of grids and
+    /// lists, make a flight: what forbids one, such as moments of inertia that no body has, mostly grows or
+    /// falls with each input, and what lies between is taken to make a flight too.
     ///
     /// # Errors
     /// The first flight that cannot be built.

@@ -94,9 +94,9 @@ pub fn replace(
     let mut file = disk.create(beside)?;
     let filled = fill(file.as_mut()).and_then(|()| file.flush()).and_then(|()| file.sync());
     drop(file);
-    if filled.is_err() {
+    let done = filled.and_then(|()| disk.rename(beside, path));
+    if done.is_err() {
         let _ = std::fs::remove_file(beside);
     }
-    filled?;
-    disk.rename(beside, path)
+    done
 }

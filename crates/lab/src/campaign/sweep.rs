@@ -58,6 +58,11 @@ impl Draw {
     pub fn cell(&self, cell: u64) -> Input {
         match self {
             Self::Grid(low, high, count) => {
+                let step = (high - low) / (*count - 1) as f64;
+                if low.fract() == 0.0 && high.fract() == 0.0 && step.fract() == 0.0 {
+                    // Whole numbers stay whole.
+                    return Input::Number(low + step * cell as f64);
+                }
                 let share = cell as f64 / (*count - 1) as f64;
                 // Both ends exactly as they are written.
                 Input::Number(low * (1.0 - share) + high * share)
@@ -80,6 +85,15 @@ impl Draw {
             }
             Self::Grid(low, ..) => low,
             Self::List(_) => 0.0,
+        }
+    }
+
+    /// Every value where they are counted, else the extreme ones; at most `most`, or nothing.
+    pub fn corners(&self, most: u64) -> Option<Vec<Input>> {
+        match self.count() {
+            Some(count) if count > most => None,
+            Some(count) => Some((0..count).map(|cell| self.cell(cell)).collect()),
+            None => Some(self.extremes()),
         }
     }
 
