@@ -284,16 +284,15 @@ impl Campaign {
     }
 
     /// Whether every combination of the inputs' extreme values, and of all those of grids and lists, makes a
-    /// flight; not if there are too many to
-    /// try, nor for a plan that was read.
+    /// flight; not if there are too many to try, nor for a plan that was read.
     pub(super) fn corners_fly(&self) -> bool {
         const MOST: usize = 4096;
-        let corners = self.sweeps.iter().map(|sweep| sweep.draw.corners(MOST as u64));
-        let Some(extremes) = corners.collect::<Option<Vec<_>>>() else { return false };
-        let corners = extremes.iter().map(Vec::len).fold(1, usize::saturating_mul);
+        let inputs = self.sweeps.iter().map(|sweep| sweep.draw.corners(MOST as u64));
+        let Some(inputs) = inputs.collect::<Option<Vec<_>>>() else { return false };
+        let corners = inputs.iter().map(Vec::len).fold(1, usize::saturating_mul);
         let flies = |corner: usize| {
             let mut rest = corner;
-            let inputs = extremes.iter().map(|values| {
+            let inputs = inputs.iter().map(|values| {
                 let at = rest % values.len();
                 rest /= values.len();
                 values[at].clone()

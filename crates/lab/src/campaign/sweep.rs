@@ -88,7 +88,7 @@ impl Draw {
         }
     }
 
-    /// Every value where they are counted, else the extreme ones; at most `most`, or nothing.
+    /// Every value where they are counted, nothing where they are more than `most`; else the extreme ones.
     pub fn corners(&self, most: u64) -> Option<Vec<Input>> {
         match self.count() {
             Some(count) if count > most => None,
