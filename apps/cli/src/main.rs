@@ -41,6 +41,9 @@ impl Failure {
         if error.kind() == std::io::ErrorKind::Interrupted {
             return Self::Interrupted;
         }
+        if let Some(faults) = error.get_ref().and_then(|inner| inner.downcast_ref::<Faults>()) {
+            return Self::Faults(faults.clone());
+        }
         Self::file(path, &advise(path, error))
     }
 

@@ -55,7 +55,7 @@ pub fn sweep(args: &Sweep, common: &Common) -> Result<(), Failure> {
     // Resumed, the plan is written once more: someone may have changed it.
     files::begin(&Native, &args.out, &campaign).map_err(broken)?;
     terminal::ORDERLY.store(true, Ordering::Relaxed);
-    let end = fly(&drive, common).map_err(broken)?;
+    let end = fly(&drive, common).map_err(|error| unflown(Failure::out(&args.out, &error)))?;
     let End::Complete(flights) = end else {
         terminal::warn("stopped; what is flown is kept: the same command with --resume goes on");
         return Err(Failure::Interrupted);
@@ -71,10 +71,14 @@ pub fn sweep(args: &Sweep, common: &Common) -> Result<(), Failure> {
         );
         return Ok(());
     }
-    let index = Index::read(&args.out.join(JOURNAL)).map_err(broken)?;
-    let parts: Vec<Index> = index.into_iter().collect();
-    conclude(&campaign, &args.plan, &args.out, &parts, flights, common)?;
-    refly(&campaign, &args.out, &parts, flights, &logs).map_err(broken)
+    let parts = || -> Result<Vec<Index>, Failure> {
+        Ok(Index::read(&args.out.join(JOURNAL)).map_err(broken)?.into_iter().collect())
+    };
+    conclude(&campaign, &args.plan, &args.out, parts()?, flights, common)?;
+    if logs.is_empty() {
+        return Ok(());
+    }
+    refly(&campaign, &args.out, &parts()?, flights, &logs).map_err(broken)
 }
 
 /// Joins the parts of a campaign.
@@ -113,7 +117,7 @@ pub fn merge(args: &Merge, common: &Common) -> Result<(), Failure> {
     if held == Held::Nothing {
         files::begin(&Native, &args.out, &campaign).map_err(broken)?;
     }
-    conclude(&campaign, &args.plan, &args.out, &parts, campaign.flights(), common)
+    conclude(&campaign, &args.plan, &args.out, parts, campaign.flights(), common)
 }
 
 fn load(plan: &Plan) -> Result<Campaign, Failure> {
@@ -278,6 +282,15 @@ fn check(drive: &Drive<'_>, common: &Common) -> Result<(), Faults> {
     checked
 }
 
+/// What to do with a campaign of which a flight could not be built, when others were flown already.
+fn unflown(failure: Failure) -> Failure {
+    let Failure::Faults(Faults(mut faults)) = failure else { return failure };
+    let message = "the campaign ends here: flights before it may have been flown";
+    let help = "mend the file so that every draw makes a flight, and begin anew in another --out";
+    faults.push(Fault::general(message).help(help));
+    Failure::Faults(Faults(faults))
+}
+
 /// Flies with a bar that tells rate, failures and the success probability so far.
 fn fly(drive: &Drive<'_>, common: &Common) -> io::Result<End> {
     let bar = terminal::progress("flying", common.quiet || common.json);
@@ -289,6 +302,9 @@ fn fly(drive: &Drive<'_>, common: &Common) -> io::Result<End> {
 }
 
 fn tell(bar: &ProgressBar, progress: &Progress, begin: Instant) {
+    if bar.is_hidden() {
+        return;
+    }
     bar.set_length(progress.flights);
     bar.set_position(progress.done.flown);
     let rate = (progress.flown_now + 1) as f64 / (begin.elapsed().as_secs_f64() + 1e-3);

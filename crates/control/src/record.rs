@@ -56,6 +56,16 @@ impl Path<'_> {
     pub const fn name(&self) -> &'static str {
         self.name
     }
+
+    /// The name one level up; none for a name of one part.
+    pub fn parent(&self) -> Option<&Self> {
+        self.parent.filter(|parent| !parent.name.is_empty())
+    }
+
+    /// The first part of the name.
+    pub fn first(&self) -> &'static str {
+        self.parent().map_or(self.name, Self::first)
+    }
 }
 
 impl fmt::Display for Path<'_> {

@@ -10,14 +10,19 @@ use stormpetrel_control::record::RecordExt;
 use stormpetrel_plant::dispatch::{Fleet, Registers, Width, Work};
 use stormpetrel_plant::flight::Flight;
 
-use crate::fly::{Outcome, failure, setting};
+use crate::fly::{Outcome, Workspace, failure, setting};
 use crate::metric::{Distribution, Setting, Sums, metrics};
 use crate::scenario::Scenario;
 
 /// Flies scenarios of one structure; outcomes in their order. Without `attitude` only the metrics of
 /// the position are taken.
-pub fn fly_alike(scenarios: &[&Scenario], width: Width, attitude: bool) -> Vec<Outcome> {
-    deep(|| width.fly(Alike { scenarios, attitude }))
+pub fn fly_alike(
+    scenarios: &[&Scenario],
+    width: Width,
+    attitude: bool,
+    workspace: &mut Workspace,
+) -> Vec<Outcome> {
+    deep(|| width.fly(Alike { scenarios, attitude, workspace }))
 }
 
 /// Does the work where there is room: without optimisation every function keeps copies of eight flights,
@@ -43,17 +48,18 @@ fn deep<R>(work: impl FnOnce() -> R) -> R {
 struct Alike<'a> {
     scenarios: &'a [&'a Scenario],
     attitude: bool,
+    workspace: &'a mut Workspace,
 }
 
 impl Fleet for Alike<'_> {
     type Output = Vec<Outcome>;
 
     fn fly<T: Real<Scalar = f64>, const N: usize>(self, registers: impl Registers) -> Vec<Outcome> {
-        let Self { scenarios, attitude } = self;
+        let Self { scenarios, attitude, workspace } = self;
         let mut outcomes = vec![None; scenarios.len()];
         let mut waiting: VecDeque<usize> = (0..scenarios.len()).collect();
         let Some(first) = scenarios.first() else { return Vec::new() };
-        let mut batch = Batch::<T, N>::new(first, attitude && first.has_attitude());
+        let mut batch = Batch::<T, N>::new(first, attitude && first.has_attitude(), workspace);
         loop {
             batch.board(scenarios, &mut waiting);
             if batch.seats.iter().all(Option::is_none) && waiting.is_empty() {
@@ -86,27 +92,27 @@ struct Group<T> {
     taken: T,
 }
 
-struct Batch<T, const N: usize> {
+struct Batch<'a, T, const N: usize> {
     groups: [Group<T>; N],
     settings: [Setting<T>; N],
     /// One for each lane, group after group.
     seats: Vec<Option<Seat>>,
     /// Left behind by flights that are over.
-    distributions: Vec<Distribution>,
+    distributions: &'a mut Vec<Distribution>,
     /// Tick at which a waiting flight can board.
     until: u64,
 }
 
-impl<T: Real<Scalar = f64>, const N: usize> Batch<T, N> {
+impl<'a, T: Real<Scalar = f64>, const N: usize> Batch<'a, T, N> {
     /// Empty lanes with the structure of this flight.
-    fn new(scenario: &Scenario, attitude: bool) -> Self {
+    fn new(scenario: &Scenario, attitude: bool, workspace: &'a mut Workspace) -> Self {
         let empty = Flight { alive: 0.0, ..scenario.flight() };
         let group = Group { flight: empty.everywhere(), sums: Sums::new(), taken: T::zero() };
         Self {
             groups: [group; N],
             settings: [Setting { has_attitude: attitude, ..setting(scenario) }; N],
             seats: (0..N * T::LANES).map(|_| None).collect(),
-            distributions: Vec::new(),
+            distributions: &mut workspace.distributions,
             until: u64::MAX,
         }
     }
@@ -170,9 +176,9 @@ impl<T: Real<Scalar = f64>, const N: usize> Batch<T, N> {
 }
 
 /// The closed loop until the first flight of the batch is over, to be compiled for each width.
-struct Segment<'a, T, const N: usize>(&'a mut Batch<T, N>);
+struct Segment<'a, 'b, T, const N: usize>(&'a mut Batch<'b, T, N>);
 
-impl<T: Real<Scalar = f64>, const N: usize> Work for Segment<'_, T, N> {
+impl<T: Real<Scalar = f64>, const N: usize> Work for Segment<'_, '_, T, N> {
     type Output = ();
 
     #[inline(always)]

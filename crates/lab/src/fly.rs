@@ -121,33 +121,42 @@ pub fn fly_batch(scenarios: &[Scenario]) -> Vec<Outcome> {
 
 /// [`fly_batch`] at a given width.
 pub fn fly_batch_at(scenarios: &[Scenario], width: Width) -> Vec<Outcome> {
-    batches(scenarios, width, true)
+    Workspace::default().fly(scenarios, width, true)
 }
 
 /// [`fly_batch`] with the metrics of the position only: attitude metrics cost as much as a law.
 pub fn fly_batch_position(scenarios: &[Scenario]) -> Vec<Outcome> {
-    batches(scenarios, Width::widest(), false)
+    Workspace::default().fly(scenarios, Width::widest(), false)
 }
 
-fn batches(scenarios: &[Scenario], width: Width, attitude: bool) -> Vec<Outcome> {
-    let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
-    for (row, scenario) in scenarios.iter().enumerate() {
-        groups.entry(scenario.structure()).or_default().push(row);
-    }
-    let mut outcomes = vec![None; scenarios.len()];
-    for rows in groups.values() {
-        let flown = match rows.as_slice() {
-            [alone] if attitude => vec![fly(&scenarios[*alone], |_, _| {})],
-            rows => {
-                let alike: Vec<&Scenario> = rows.iter().map(|row| &scenarios[*row]).collect();
-                fly_alike(&alike, width, attitude)
-            }
-        };
-        for (row, outcome) in rows.iter().zip(flown) {
-            outcomes[*row] = Some(outcome);
+/// Memory that a batch of flights leaves for the next one.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    pub(crate) distributions: Vec<Distribution>,
+}
+
+impl Workspace {
+    /// [`fly_batch`] at a given width; without `attitude` as [`fly_batch_position`].
+    pub fn fly(&mut self, scenarios: &[Scenario], width: Width, attitude: bool) -> Vec<Outcome> {
+        let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+        for (row, scenario) in scenarios.iter().enumerate() {
+            groups.entry(scenario.structure()).or_default().push(row);
         }
+        let mut outcomes = vec![None; scenarios.len()];
+        for rows in groups.values() {
+            let flown = match rows.as_slice() {
+                [alone] if attitude => vec![fly(&scenarios[*alone], |_, _| {})],
+                rows => {
+                    let alike: Vec<&Scenario> = rows.iter().map(|row| &scenarios[*row]).collect();
+                    fly_alike(&alike, width, attitude, self)
+                }
+            };
+            for (row, outcome) in rows.iter().zip(flown) {
+                outcomes[*row] = Some(outcome);
+            }
+        }
+        outcomes.into_iter().flatten().collect()
     }
-    outcomes.into_iter().flatten().collect()
 }
 
 /// Maps over the items on all cores, in order.

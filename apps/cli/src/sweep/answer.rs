@@ -18,12 +18,14 @@ pub(super) fn conclude(
     campaign: &Campaign,
     plan: &Plan,
     out: &Path,
-    parts: &[Index],
+    parts: Vec<Index>,
     flights: u64,
     common: &Common,
 ) -> Result<(), Failure> {
     let broken = |error: io::Error| Failure::out(out, &error);
-    let summary = files::finish(&Native, out, campaign, parts, flights).map_err(broken)?;
+    let summary = files::finish(&Native, out, campaign, &parts, flights).map_err(broken)?;
+    // Of a long campaign an index is large, and the report does without.
+    drop(parts);
     let command = |sets: &[String]| command("run", plan, sets);
     let mut again = self::command("sweep", plan, &[]);
     if let Some(path) = &plan.drawn {

@@ -50,9 +50,6 @@ pub(super) fn refly(
     flights: u64,
     logs: &[Which],
 ) -> io::Result<()> {
-    if logs.is_empty() {
-        return Ok(());
-    }
     for index in chosen(campaign, parts, flights, logs)? {
         let scenario = campaign
             .flight(&campaign.inputs(index), campaign.seed(index))

@@ -2,13 +2,16 @@
 //! all of them take.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Barrier, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::drive::{Drive, built, rows};
+use stormpetrel_control::real::Real;
+
+use super::drive::{Drive, rows};
+use super::journal::{CHUNK, Record};
 use super::plan::Campaign;
-use crate::fly::fly_batch;
-use crate::scenario::Scenario;
+use super::worker::{Worker, built};
+use crate::fly::LANES;
 use crate::scenario::fault::Faults;
 
 impl Drive<'_> {
@@ -54,32 +57,61 @@ impl Drive<'_> {
     }
 }
 
-/// Wall time of a campaign on so many threads, reckoned from eight of its flights over at most 2,000 ticks.
+/// Wall time of a campaign on so many threads, reckoned from its first chunk: all threads fly it at once, as
+/// they will share the machine then.
 ///
 /// # Errors
 /// Where one of these flights cannot be built.
 pub fn estimate(campaign: &Campaign, flights: u64, threads: usize) -> Result<Duration, Faults> {
-    const TICKS: f64 = 2000.0;
-    let mut scenarios = Vec::new();
-    for index in 0..if flights < 8 { flights } else { 8 } {
-        let mut scenario = built(campaign, index)?;
-        let longest = TICKS * scenario.run.control_step;
-        if scenario.run.duration > longest {
-            scenario.run.duration = longest;
-        }
-        scenarios.push(scenario);
-    }
-    let ticks: u64 = scenarios.iter().map(Scenario::ticks).sum();
-    // What the first times wait for, such as memory, a campaign does not wait for again.
-    let times = (0..4).map(|_| {
-        let begin = Instant::now();
-        fly_batch(&scenarios);
-        begin.elapsed()
-    });
-    let time = times.min().unwrap_or_default().as_secs_f64();
-    let per_tick = time / if ticks > 0 { ticks as f64 } else { 1.0 };
-    let whole = flights as f64 * campaign.scenario.ticks() as f64 * per_tick / threads as f64;
+    let together = Barrier::new(threads);
+    let time = || {
+        together.wait();
+        time_of_chunk(campaign)
+    };
+    let times = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(time)).collect();
+        // A flight that breaks the program is told when its turn comes.
+        threads.into_iter().filter_map(|thread| thread.join().ok()).collect::<Result<Vec<_>, _>>()
+    })?;
+    let slowest = times.into_iter().fold(0.0, Real::max);
+    // A thread takes whole chunks, and lanes take their time full or not.
+    let chunks = flights.div_ceil(CHUNK).div_ceil(threads as u64);
+    let lanes = (if flights < CHUNK { flights } else { CHUNK }).next_multiple_of(LANES as u64);
+    let whole = slowest * chunks as f64 * (lanes as f64 / CHUNK as f64);
     // Ten thousand years are enough to say no.
-    let seconds = if whole < 3e11 { whole } else { 3e11 };
-    Ok(Duration::from_secs_f64(seconds))
+    Ok(Duration::from_secs_f64(if whole < 3e11 { whole } else { 3e11 }))
+}
+
+/// Time for the first chunk (s). At most 500 ticks are flown: what they take beyond the first grows with
+/// their number.
+fn time_of_chunk(campaign: &Campaign) -> Result<f64, Faults> {
+    let ticks = campaign.scenario.ticks() as f64;
+    let long = if ticks < 500.0 { ticks } else { 500.0 };
+    let mut worker = Worker::new(campaign);
+    let mut fastest = [f64::INFINITY; 2];
+    // What the first times wait for, such as memory, a campaign does not wait for again.
+    for _ in 0..3 {
+        for (fastest, ticks) in fastest.iter_mut().zip([1.0, long]) {
+            let begin = Instant::now();
+            fly_cut(campaign, ticks, &mut worker)?;
+            *fastest = Real::min(*fastest, begin.elapsed().as_secs_f64());
+        }
+    }
+    let [one, all] = fastest;
+    Ok(if long > 1.0 { one + (all - one) * (ticks - 1.0) / (long - 1.0) } else { one })
+}
+
+/// Builds and flies the first chunk to so many ticks.
+fn fly_cut(campaign: &Campaign, ticks: f64, worker: &mut Worker<'_>) -> Result<(), Faults> {
+    // The first ones again where there are fewer: a chunk is full but for the last.
+    let indices = (0..campaign.flights()).cycle().zip(0..CHUNK);
+    let flights = indices.map(|(index, _)| {
+        let mut flight = built(campaign, index)?;
+        flight.run.duration = Real::min(flight.run.duration, ticks * flight.run.control_step);
+        Ok(flight)
+    });
+    let entries = worker.fly(flights)?;
+    // A record of what is flown is part of the work.
+    let _ = Record::new(0, campaign.columns().metrics.len(), entries);
+    Ok(())
 }

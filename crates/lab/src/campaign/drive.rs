@@ -3,21 +3,17 @@
 
 use std::collections::BTreeMap;
 use std::io;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Mutex, PoisonError};
 
 use super::disk::Disk;
-use super::journal::{CHUNK, Entry, Index, Journal, Owner, Tally};
-use super::plan::{Campaign, Metrics};
-use super::result::Columns;
+use super::journal::{CHUNK, Index, Journal, Owner, Record, Tally};
+use super::plan::Campaign;
 use super::summary::wilson;
-use crate::fly::{Outcome, fly_batch, fly_batch_position};
+use super::worker::Worker;
 use crate::output::refuse;
-use crate::scenario::Scenario;
-use crate::scenario::fault::{Fault, Faults};
 
 /// How a campaign is flown.
 #[derive(Clone, Copy, Debug)]
@@ -112,25 +108,25 @@ impl Drive<'_> {
         let enough = AtomicBool::new(count.enough());
         watch(&count.progress());
         std::thread::scope(|scope| {
-            let (send, receive) = sync_channel(2 * self.threads);
+            let (send, receive) = sync_channel(self.threads);
             for _ in 0..self.threads {
                 let (send, next, enough) = (send.clone(), &next, &enough);
                 scope.spawn(move || {
+                    let mut worker = Worker::new(self.campaign);
                     while !self.stop.load(Ordering::Relaxed) && !enough.load(Ordering::Relaxed) {
                         let Some(chunk) = next() else { break };
-                        if send.send((chunk, self.fly_chunk(chunk))).is_err() {
+                        if send.send((chunk, worker.fly_chunk(chunk))).is_err() {
                             break;
                         }
                     }
                 });
             }
             drop(send);
-            let kept = keep(&receive, &mut journal, &mut count, &enough, watch);
+            let kept = keep(receive, &mut journal, &mut count, &enough, watch);
             if kept.is_err() {
                 // Lets the threads end: nothing more can be kept.
                 enough.store(true, Ordering::Relaxed);
             }
-            drop(receive);
             kept
         })?;
         Ok(count.end())
@@ -140,20 +136,6 @@ impl Drive<'_> {
     pub(super) fn chunks(&self) -> impl Iterator<Item = u64> {
         let (shard, shards) = self.shard;
         (0..self.campaign.flights().div_ceil(CHUNK)).filter(move |chunk| chunk % shards == shard)
-    }
-
-    /// Flies a chunk. A flight that breaks the program is told by its numbers.
-    fn fly_chunk(&self, chunk: u64) -> io::Result<Vec<Entry>> {
-        let flown =
-            catch_unwind(AssertUnwindSafe(|| fly_rows(self.campaign, rows(self.campaign, chunk))));
-        flown.unwrap_or_else(|_| {
-            let rows = rows(self.campaign, chunk);
-            Err(io::Error::other(format!(
-                "a flight from {} to {} broke the program: please report the campaign file and these numbers",
-                rows.start,
-                rows.end - 1
-            )))
-        })
     }
 }
 
@@ -171,69 +153,37 @@ pub fn identity(campaign: &Campaign) -> u64 {
     })
 }
 
-/// A flight of the plan.
-pub(super) fn built(campaign: &Campaign, index: u64) -> Result<Scenario, Faults> {
-    let flight = campaign.flight(&campaign.inputs(index), campaign.seed(index));
-    flight.map_err(|Faults(faults)| {
-        let told = |fault: Fault| {
-            let message = format!("flight {index} of the plan: {}", fault.message);
-            Fault { message, ..fault }
-        };
-        Faults(faults.into_iter().map(told).collect())
-    })
-}
+/// A chunk and what came of it.
+type Flown = (u64, io::Result<Record>);
 
-/// Flies these flights of the plan.
-///
-/// # Errors
-/// Where the inputs of one make no flight.
-pub fn fly_rows(campaign: &Campaign, rows: std::ops::Range<u64>) -> io::Result<Vec<Entry>> {
-    let mut scenarios: Vec<Scenario> = Vec::new();
-    for index in rows {
-        let refused =
-            |faults: Faults| io::Error::new(io::ErrorKind::InvalidInput, faults.to_string());
-        scenarios.push(built(campaign, index).map_err(refused)?);
-    }
-    let outcomes = match campaign.choices.metrics {
-        Metrics::All => fly_batch(&scenarios),
-        Metrics::Position => fly_batch_position(&scenarios),
-    };
-    let columns = campaign.columns();
-    Ok(outcomes.iter().map(|outcome| entry(outcome, &columns)).collect())
-}
-
-fn entry(outcome: &Outcome, columns: &Columns) -> Entry {
-    // Both are in the order of `metric::names`, so the next is mostly the one that is looked for.
-    let mut next = outcome.metrics.iter().peekable();
-    let value = |name: &String| {
-        let found = next.next_if(|(known, _)| known == name).map(|(_, value)| *value);
-        found.or_else(|| outcome.get(name)).unwrap_or(f64::NAN)
-    };
-    let metrics = columns.metrics.iter();
-    Entry { failure: outcome.failure, metrics: metrics.map(value).collect() }
-}
-
-type Flown = (u64, io::Result<Vec<Entry>>);
-
-/// Takes chunks as they come and keeps them.
+/// Takes chunks as they come and keeps them. Where some cannot be flown the first of them in the plan is
+/// told: all chunks before it were handed out before it, and are waited for.
 fn keep(
-    receive: &Receiver<Flown>,
+    receive: Receiver<Flown>,
     journal: &mut Journal,
     count: &mut Count,
     enough: &AtomicBool,
     watch: &mut dyn FnMut(&Progress),
 ) -> io::Result<()> {
-    for (chunk, entries) in receive {
-        let entries = entries?;
-        journal.append(chunk, &entries)?;
-        let good = entries.iter().filter(|entry| entry.failure.is_none()).count() as u64;
-        count.add(chunk, Tally { flown: entries.len() as u64, good });
-        if count.enough() {
+    let mut first_bad: Option<(u64, io::Error)> = None;
+    for (chunk, record) in receive {
+        match record {
+            Ok(record) => {
+                journal.append(&record)?;
+                count.add(record.chunk(), record.tally());
+                watch(&count.progress());
+            }
+            Err(error) => {
+                if first_bad.as_ref().is_none_or(|(bad, _)| chunk < *bad) {
+                    first_bad = Some((chunk, error));
+                }
+            }
+        }
+        if first_bad.is_some() || count.enough() {
             enough.store(true, Ordering::Relaxed);
         }
-        watch(&count.progress());
     }
-    Ok(())
+    first_bad.map_or(Ok(()), |(_, error)| Err(error))
 }
 
 /// Counts what is done, and how far the plan is done without a gap: only that may decide when there is

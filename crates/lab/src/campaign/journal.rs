@@ -94,9 +94,53 @@ pub struct Entry {
 
 const CAUSES: [Cause; 4] = [Cause::PositionError, Cause::Tilt, Cause::Ground, Cause::NonFinite];
 
-fn encode(entries: &[Entry]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    for Entry { failure, metrics } in entries {
+/// A chunk of flights as it stands in the journal.
+#[derive(Clone, Debug)]
+pub struct Record {
+    chunk: u64,
+    tally: Tally,
+    bytes: Vec<u8>,
+}
+
+impl Record {
+    /// From the flights of the chunk, each with so many metrics.
+    ///
+    /// # Errors
+    /// Where they take more than 4 GiB.
+    pub fn new(
+        chunk: u64,
+        metrics: usize,
+        entries: impl ExactSizeIterator<Item = Entry>,
+    ) -> io::Result<Self> {
+        let size = entries.len() * flight_size(metrics);
+        let mut bytes = Vec::with_capacity(HEAD + size + 4);
+        bytes.extend(chunk.to_le_bytes());
+        bytes.extend(u32::try_from(size).map_err(io::Error::other)?.to_le_bytes());
+        bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+        let mut tally = Tally::default();
+        for entry in entries {
+            entry.encode(&mut bytes);
+            tally.flown += 1;
+            tally.good += u64::from(entry.failure.is_none());
+        }
+        bytes.extend(crc32fast::hash(&bytes[HEAD..]).to_le_bytes());
+        Ok(Self { chunk, tally, bytes })
+    }
+
+    /// Which chunk it is.
+    pub fn chunk(&self) -> u64 {
+        self.chunk
+    }
+
+    /// What it came to.
+    pub fn tally(&self) -> Tally {
+        self.tally
+    }
+}
+
+impl Entry {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        let Self { failure, metrics } = self;
         let code = failure.and_then(|f| CAUSES.iter().position(|cause| *cause == f.cause));
         let code = code.and_then(|at| u8::try_from(at + 1).ok()).unwrap_or(0);
         bytes.push(code);
@@ -105,7 +149,6 @@ fn encode(entries: &[Entry]) -> Vec<u8> {
             bytes.extend(x.to_le_bytes());
         }
     }
-    bytes
 }
 
 fn decode(bytes: &[u8], metrics: usize) -> Vec<Entry> {
@@ -136,13 +179,13 @@ pub struct Index {
     path: PathBuf,
     owner: Owner,
     /// In the order of their chunks.
-    records: Vec<Record>,
+    records: Vec<Place>,
     end: u64,
 }
 
 /// Where a chunk stands, and what it came to. A long campaign has many of them.
 #[derive(Clone, Copy, Debug)]
-struct Record {
+struct Place {
     begin: u64,
     chunk: u32,
     flights: u16,
@@ -181,7 +224,7 @@ impl Index {
             Err(error) => return Err(error),
         };
         let length = file.metadata()?.len();
-        let mut file = BufReader::with_capacity(1 << 18, file);
+        let mut file = BufReader::with_capacity(1 << 16, file);
         let mut header = [0; HEADER];
         if length < HEADER as u64 {
             // Died while beginning: a prefix of a header is nothing flown, other bytes are not ours.
@@ -229,7 +272,7 @@ impl Index {
         else {
             return Err(damaged(&self.path, at, "a record that no campaign writes"));
         };
-        let mut record = Record { begin, chunk, flights, good: 0 };
+        let mut record = Place { begin, chunk, flights, good: 0 };
         let entries = self.flights(&record, file)?;
         record.good = entries.iter().map(|entry| u16::from(entry.failure.is_none())).sum();
         self.records.push(record);
@@ -250,7 +293,7 @@ impl Index {
     }
 
     /// The flights of a record, at which `file` stands.
-    fn flights(&self, record: &Record, file: &mut impl Read) -> io::Result<Vec<Entry>> {
+    fn flights(&self, record: &Place, file: &mut impl Read) -> io::Result<Vec<Entry>> {
         let size = usize::from(record.flights) * flight_size(self.metrics());
         let mut payload = vec![0; size + 4];
         file.read_exact(&mut payload)?;
@@ -264,7 +307,7 @@ impl Index {
         usize::try_from(self.owner.metrics).unwrap_or(usize::MAX)
     }
 
-    fn find(&self, chunk: u64) -> Option<&Record> {
+    fn find(&self, chunk: u64) -> Option<&Place> {
         let at =
             self.records.binary_search_by_key(&chunk, |record| u64::from(record.chunk)).ok()?;
         self.records.get(at)
@@ -329,15 +372,8 @@ impl Journal {
     ///
     /// # Errors
     /// Where it cannot be written; the file may then end in half a record.
-    pub fn append(&mut self, chunk: u64, entries: &[Entry]) -> io::Result<()> {
-        let payload = encode(entries);
-        let mut bytes = Vec::with_capacity(HEAD + payload.len() + 4);
-        bytes.extend(chunk.to_le_bytes());
-        bytes.extend(u32::try_from(payload.len()).map_err(io::Error::other)?.to_le_bytes());
-        bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
-        bytes.extend(&payload);
-        bytes.extend(crc32fast::hash(&payload).to_le_bytes());
-        self.file.write_all(&bytes)?;
+    pub fn append(&mut self, record: &Record) -> io::Result<()> {
+        self.file.write_all(&record.bytes)?;
         self.file.sync()
     }
 }

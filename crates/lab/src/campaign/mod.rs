@@ -22,3 +22,4 @@ pub mod summary;
 pub mod sweep;
 mod tables;
 mod units;
+mod worker;

@@ -24,7 +24,7 @@ use super::spool::Spool;
 /// there should be few of them.
 pub const GROUP: usize = 1 << 18;
 /// Bytes of the distinct values of a column in a group, beyond which they are not gathered any more.
-const DICTIONARY: usize = 1 << 16;
+const DICTIONARY: usize = 1 << 14;
 /// Bytes of a page of a column, which is put together in memory.
 const DATA: usize = 1 << 15;
 /// Named in the file in place of the library and its version, which would change the bytes.

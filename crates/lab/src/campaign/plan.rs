@@ -17,7 +17,7 @@ use super::result::{Columns, Input};
 use super::sweep::{self, Sweep};
 use super::{tables, units};
 use crate::metric;
-use crate::scenario::document::{Node, Value};
+use crate::scenario::document::{Node, Table, Value, parse_set, set_number};
 use crate::scenario::fault::{Fault, Faults};
 use crate::scenario::read::{Reader, wrong_type};
 use crate::scenario::{Base, Scenario};
@@ -209,7 +209,13 @@ impl Campaign {
     /// # Errors
     /// Where they make no vehicle that can exist, such as moments of inertia that no body has.
     pub fn flight(&self, inputs: &[Input], seed: u64) -> Result<Scenario, Faults> {
-        self.base.scenario(&self.sets(inputs, seed))
+        let mut sets = vec![set_number("run.seed", seed as f64, true)?];
+        for (input, targets) in inputs.iter().zip(&self.targets) {
+            for target in targets {
+                sets.push(set(target, input)?);
+            }
+        }
+        self.base.scenario(&sets)
     }
 
     /// The columns of its results.
@@ -306,12 +312,9 @@ impl Campaign {
     fn check_extremes(&mut self, faults: &mut Vec<Fault>) {
         for (sweep, targets) in self.sweeps.iter().zip(&self.targets) {
             for value in sweep.draw.extremes().into_iter().chain(sweep.draw.between()) {
-                let set = |(path, factor): &(String, f64)| match &value {
-                    Input::Number(x) => format!("{path}={:?}", x * factor),
-                    Input::Text(text) => format!("{path}={text}"),
-                };
-                let sets: Vec<String> = targets.iter().map(set).collect();
-                let found = match self.base.scenario(&sets) {
+                let sets: Result<Vec<_>, _> =
+                    targets.iter().map(|target| set(target, &value)).collect();
+                let found = match sets.and_then(|sets| self.base.scenario(&sets)) {
                     Ok(scenario) => {
                         self.tables.extend(tables::contents(&scenario));
                         continue;
@@ -324,6 +327,14 @@ impl Campaign {
                 }
             }
         }
+    }
+}
+
+/// What lays this value over a scenario at a path, times the factor.
+fn set((path, factor): &(String, f64), value: &Input) -> Result<Table, Faults> {
+    match value {
+        Input::Number(x) => set_number(path, x * factor, false),
+        Input::Text(text) => parse_set(&format!("{path}={text}")),
     }
 }
 

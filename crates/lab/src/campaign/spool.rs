@@ -3,7 +3,7 @@
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
 /// Rows of a page: what is held in memory.
-const PAGE: usize = 256;
+const PAGE: usize = 128;
 /// Bytes of one column of a page.
 const STRIP: usize = 8 * PAGE;
 

@@ -42,9 +42,6 @@ pub fn advise(path: &Path, error: &io::Error) -> io::Error {
             "make room, or give an --out with more room; with run.log_every a log takes less"
         }
         ErrorKind::InvalidFilename => "give a shorter name, without special characters",
-        ErrorKind::InvalidInput => {
-            "mend the file so that every draw makes a flight, and begin anew in another --out"
-        }
         _ => "give another --out",
     };
     refuse(path, &error.to_string(), help)

@@ -62,17 +62,16 @@ impl Base {
         self.tree.get(key)
     }
 
-    /// The flight with these `--set` arguments laid over it.
+    /// The flight with these settings laid over it.
     ///
     /// # Errors
     /// Everything that is wrong with them.
-    pub fn scenario(&self, sets: &[String]) -> Result<Scenario, Faults> {
+    pub fn scenario(&self, sets: &[Table]) -> Result<Scenario, Faults> {
         let mut tree = self.tree.clone();
         let mut faults = Vec::new();
         for set in sets {
-            let set = parse_set(set)?;
-            missing_items(&tree, &set, "", &mut faults);
-            tree.overlay(&set);
+            missing_items(&tree, set, "", &mut faults);
+            tree.overlay(set);
         }
         Faults(faults).check()?;
         let read = read_scenario(self.name.clone(), &tree, &self.source, &Variant::default());

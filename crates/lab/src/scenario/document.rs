@@ -225,19 +225,11 @@ fn read_value(source: &Arc<Source>, value: &Spanned<DeValue<'_>>) -> Result<Node
 /// # Errors
 /// An argument without `=` or without a path.
 pub fn parse_set(argument: &str) -> Result<Table, Faults> {
-    let example = "write it as --set position.kp=6.0";
     let Some((path, value)) = argument.split_once('=') else {
-        return Err(Fault::general(format!("--set {argument}: no `=`")).help(example).into());
+        return Err(Fault::general(format!("--set {argument}: no `=`")).help(EXAMPLE).into());
     };
     let (path, value) = (path.trim(), value.trim());
-    let plain = |part: &str| {
-        !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
-    };
-    if !path.split('.').all(plain) {
-        return Err(Fault::general(format!("--set {argument}: `{path}` is not a dotted path"))
-            .help(example)
-            .into());
-    }
+    dotted(path, argument)?;
     let tree = parse("--set", format!("{path} = {value}"));
     // A list, a table or a number that begins well and ends badly is no text.
     let begun = value.starts_with(['[', '{', '"', '\'', '+', '-', '.'])
@@ -253,9 +245,46 @@ pub fn parse_set(argument: &str) -> Result<Table, Faults> {
     if table.0.len() != 1 {
         let end = source.text.len();
         let place = Place { source, span: 0..end };
-        return Err(Fault::new(&place, "--set changes one setting at a time").help(example).into());
+        return Err(Fault::new(&place, "--set changes one setting at a time").help(EXAMPLE).into());
     }
     not_to_set(&table).map(|()| table)
+}
+
+/// What [`parse_set`] makes of `path=x`, without a text to be read; `whole` where it is written as a whole
+/// number.
+///
+/// # Errors
+/// As [`parse_set`].
+pub fn set_number(path: &str, x: f64, whole: bool) -> Result<Table, Faults> {
+    let text = format!("{path} = {x:?}");
+    dotted(path, &text)?;
+    let end = text.len();
+    let source = Arc::new(Source { name: "--set".into(), text });
+    let here = place(&source, 0..path.len());
+    let number =
+        Node { place: place(&source, path.len() + 3..end), value: Value::Number(x, whole) };
+    let entry = |key: &str, node| Table(vec![Entry { key: key.into(), place: here.clone(), node }]);
+    let mut keys = path.rsplit('.');
+    let last = keys.next().map_or_else(Table::default, |key| entry(key, number));
+    let table = keys.fold(last, |table, key| {
+        entry(key, Node { place: here.clone(), value: Value::Table(table) })
+    });
+    not_to_set(&table).map(|()| table)
+}
+
+/// How a `--set` argument is written.
+const EXAMPLE: &str = "write it as --set position.kp=6.0";
+
+/// Refuses an argument whose path is none.
+fn dotted(path: &str, argument: &str) -> Result<(), Faults> {
+    let plain = |part: &str| {
+        !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+    };
+    if path.split('.').all(plain) {
+        return Ok(());
+    }
+    let message = format!("--set {argument}: `{path}` is not a dotted path");
+    Err(Fault::general(message).help(EXAMPLE).into())
 }
 
 /// Refuses settings that say which flights there are: they cannot be changed from outside.

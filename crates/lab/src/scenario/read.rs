@@ -50,19 +50,24 @@ impl<'a> Reader<'a> {
     }
 
     /// The node of `kp.x`: an own key, an item of a list, or the one number for all components.
-    fn find(&self, dotted: &str) -> Option<&'a Node> {
-        let mut parts = dotted.split('.');
-        let mut node = self.table.get(parts.next()?)?;
-        for part in parts {
-            node = match &node.value {
-                Value::Table(table) => table.get(part)?,
-                Value::List(items) => {
-                    items.get(["x", "y", "z"].iter().position(|name| *name == part)?)?
-                }
-                _ => node,
-            };
+    fn find(&self, path: &Path<'_>) -> Option<&'a Node> {
+        let Some(parent) = path.parent() else { return self.table.get(path.name()) };
+        let node = self.find(parent)?;
+        match &node.value {
+            Value::Table(table) => table.get(path.name()),
+            Value::List(items) => {
+                items.get(["x", "y", "z"].iter().position(|name| *name == path.name())?)
+            }
+            _ => Some(node),
         }
-        Some(node)
+    }
+
+    /// The field as it is written: one number for all axes has no axis in its name.
+    fn written(&self, path: &Path<'_>) -> String {
+        match self.table.get(path.first()) {
+            Some(Node { value: Value::Number(..), .. }) => self.field(path.first()),
+            _ => self.field(&path.to_string()),
+        }
     }
 }
 
@@ -70,16 +75,17 @@ impl VisitorMut<f64> for Reader<'_> {
     fn vector(&mut self, path: &Path<'_>, meta: &Meta, components: &'static [&'static str]) {
         let key = path.name();
         self.known.push(key);
-        let (field, shape) = (self.field(key), "give one number for all axes, or [x, y, z]");
+        let shape = "give one number for all axes, or [x, y, z]";
+        let field = || format!("{}.{key}", self.block);
         match self.table.get(key) {
             Some(Node { place, value: Value::List(items) }) if items.len() != components.len() => {
-                let message = format!("`{field}` has {} numbers: it takes 1 or 3", items.len());
+                let message = format!("`{}` has {} numbers: it takes 1 or 3", field(), items.len());
                 self.faults.push(Fault::new(place, message).help(shape));
             }
             Some(Node { value: Value::Table(axes), .. }) => {
                 for entry in &axes.0 {
                     if !components.contains(&entry.key.as_str()) {
-                        let name = format!("{field}.{}", entry.key);
+                        let name = format!("{}.{}", field(), entry.key);
                         self.faults.push(unknown(
                             &entry.place,
                             "axis",
@@ -91,7 +97,7 @@ impl VisitorMut<f64> for Reader<'_> {
                 }
             }
             Some(Node { place, value: value @ (Value::Text(_) | Value::Flag(_)) }) => {
-                let fault = wrong_type(place, &field, value, meta.unit);
+                let fault = wrong_type(place, &field(), value, meta.unit);
                 let comma = matches!(value, Value::Text(text) if decimal_point(text).is_some());
                 self.faults.push(if comma { fault } else { fault.help(shape) });
             }
@@ -100,40 +106,37 @@ impl VisitorMut<f64> for Reader<'_> {
     }
 
     fn number(&mut self, path: &Path<'_>, meta: &Meta, value: &mut f64) {
-        let dotted = path.to_string();
-        if !dotted.contains('.') {
+        if path.parent().is_none() {
             self.known.push(path.name());
         }
-        let Some(node) = self.find(&dotted) else { return };
-        // One number for all axes is named as it is written.
-        let written = dotted.split('.').next().filter(|key| {
-            matches!(self.table.get(key), Some(Node { value: Value::Number(..), .. }))
-        });
-        let field = self.field(written.unwrap_or(&dotted));
+        let Some(node) = self.find(path) else { return };
         match &node.value {
-            Value::Number(x, whole) => match refuse(&field, *x, *whole, meta.unit, meta.range) {
-                None => *value = *x,
-                Some((message, help)) => {
-                    let fault = Fault { help, ..Fault::new(&node.place, message) };
-                    // One number for three axes is one mistake.
-                    if self.faults.last().and_then(|f| f.place.as_ref()).map(|p| &p.span)
-                        != Some(&node.place.span)
-                    {
-                        self.faults.push(fault);
-                    }
+            Value::Number(x, whole) if fits(*x, *whole, meta.unit, meta.range) => *value = *x,
+            Value::Number(x, whole) => {
+                let (message, help) =
+                    refuse(&self.written(path), *x, *whole, meta.unit, meta.range);
+                let fault = Fault { help, ..Fault::new(&node.place, message) };
+                // One number for three axes is one mistake.
+                if self.faults.last().and_then(|f| f.place.as_ref()).map(|p| &p.span)
+                    != Some(&node.place.span)
+                {
+                    self.faults.push(fault);
                 }
-            },
-            Value::Text(_) | Value::Flag(_) if dotted.contains('.') && self.in_vector(&dotted) => {}
-            other => self.faults.push(wrong_type(&node.place, &field, other, meta.unit)),
+            }
+            Value::Text(_) | Value::Flag(_) if path.parent().is_some() && self.in_vector(path) => {}
+            other => {
+                let field = self.written(path);
+                self.faults.push(wrong_type(&node.place, &field, other, meta.unit));
+            }
         }
     }
 }
 
 impl Reader<'_> {
     /// Whether the whole vector was refused already.
-    fn in_vector(&self, dotted: &str) -> bool {
-        let key = dotted.split('.').next().unwrap_or_default();
-        matches!(self.table.get(key), Some(Node { value: Value::Text(_) | Value::Flag(_), .. }))
+    fn in_vector(&self, path: &Path<'_>) -> bool {
+        let node = self.table.get(path.first());
+        matches!(node, Some(Node { value: Value::Text(_) | Value::Flag(_), .. }))
     }
 }
 
@@ -192,32 +195,37 @@ impl OptionVisitor for Reader<'_> {
     }
 }
 
-/// Why a number cannot be taken, and what may have been meant.
+/// Whether a number can be taken.
+pub(super) fn fits(x: f64, whole: bool, unit: &str, (lo, hi): (f64, f64)) -> bool {
+    x >= lo && x <= hi && x.is_finite() && !is_fraction(x, whole, unit)
+}
+
+fn is_fraction(x: f64, whole: bool, unit: &str) -> bool {
+    unit == "count" && !whole && x.fract() != 0.0
+}
+
+/// Why a number that does not fit cannot be taken, and what may have been meant.
 pub(super) fn refuse(
     field: &str,
     x: f64,
     whole: bool,
     unit: &str,
     (lo, hi): (f64, f64),
-) -> Option<(String, Option<String>)> {
-    let fraction = unit == "count" && !whole && x.fract() != 0.0;
-    if x >= lo && x <= hi && !fraction && x.is_finite() {
-        return None;
-    }
+) -> (String, Option<String>) {
     let shown = if unit == "1" { String::new() } else { format!(" {unit}") };
     let range = format!("{} to {}{shown}", scientific(lo), scientific(hi));
     if !x.is_finite() {
-        return Some((format!("`{field}` = {x}: must be a finite number from {range}"), None));
+        return (format!("`{field}` = {x}: must be a finite number from {range}"), None);
     }
-    if fraction {
+    if is_fraction(x, whole, unit) {
         let help = format!(
             "write {} or {}; a [[sweep]] gives whole numbers with `list` or `grid`",
             x.floor(),
             x.ceil()
         );
-        return Some((format!("`{field}` = {x}: must be a whole number"), Some(help)));
+        return (format!("`{field}` = {x}: must be a whole number"), Some(help));
     }
-    Some((format!("`{field}` = {}: must lie in {range}", scientific(x)), slip(x, unit, (lo, hi))))
+    (format!("`{field}` = {}: must lie in {range}", scientific(x)), slip(x, unit, (lo, hi)))
 }
 
 /// A number as a human would write it: very large and very small ones with a power of ten.

@@ -8,7 +8,7 @@ use stormpetrel_control::options::{Cells, Column, Shape};
 
 use super::document::{Node, Value};
 use super::fault::{Fault, Place, Source};
-use super::read::{refuse, wrong_type};
+use super::read::{fits, refuse, wrong_type};
 use super::source::{MOST_BYTES_OF_TABLE, table};
 
 /// A numbered row and the place of each of its cells.
@@ -212,8 +212,9 @@ fn parse(source: &Arc<Source>, shape: &Shape, faults: &mut Vec<Fault>) -> Vec<Ro
 
 fn check_row(field: &str, i: usize, row: &Row, columns: &[Column], faults: &mut Vec<Fault>) {
     for ((place, x), column) in row.iter().zip(columns) {
-        let name = format!("{field}.{i}.{}", column.name);
-        if let Some((message, help)) = refuse(&name, *x, false, column.unit, column.range) {
+        if !fits(*x, false, column.unit, column.range) {
+            let name = format!("{field}.{i}.{}", column.name);
+            let (message, help) = refuse(&name, *x, false, column.unit, column.range);
             faults.push(Fault { help, ..Fault::new(place, message) });
         }
     }

@@ -164,14 +164,19 @@ impl Summary {
     /// The flight of the sample with the median `position.iae` among those flown to their end (of an
     /// even number the better of the two in the middle); empty where there are none.
     pub fn median(&self) -> Option<Sampled<'_>> {
-        let score = |row: Sampled| row.metric(self.score?).filter(|_| !row.failed);
-        let scores = self.sample().enumerate().map(|(at, row)| Some((score(row)?, at)));
-        let mut scores: Vec<(f64, usize)> = scores.flatten().collect();
-        // Of equally bad ones the first in the order of their indices.
-        let worst_first =
-            |a: &(f64, usize), b: &(f64, usize)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
-        scores.sort_unstable_by(worst_first);
-        scores.get(scores.len() / 2).and_then(|(_, at)| self.sample.row(*at))
+        let score = |at: usize| {
+            let row = self.sample.row(at).filter(|row| !row.failed)?;
+            row.metric(self.score?)
+        };
+        let mut places: Vec<usize> =
+            (0..self.sampled()).filter(|at| score(*at).is_some()).collect();
+        // The worst first; of equally bad ones the first in the order of their indices.
+        let order = |a: &usize, b: &usize| {
+            let values = score(*a).zip(score(*b));
+            values.map_or(Ordering::Equal, |(a, b)| b.total_cmp(&a)).then(a.cmp(b))
+        };
+        places.sort_unstable_by(order);
+        places.get(places.len() / 2).and_then(|at| self.sample.row(*at))
     }
 
     /// The values of a metric over the flights of the sample that were flown to their end, with the

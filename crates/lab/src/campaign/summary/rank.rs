@@ -11,37 +11,37 @@ use stormpetrel_control::real::Real;
 /// Source: C. Spearman, "The proof and measurement of association between two things", American
 /// Journal of Psychology 15 (1904), 72-101.
 pub fn spearman(pairs: impl Iterator<Item = (f64, f64)>) -> (f64, usize) {
-    let (mut x, mut y): (Vec<f64>, Vec<f64>) = pairs.unzip();
-    rank(&mut x);
-    rank(&mut y);
-    let middle = 0.5 * (x.len() as f64 + 1.0);
+    let most = pairs.size_hint().1.unwrap_or(0);
+    let mut all: Vec<[f64; 2]> = Vec::with_capacity(most);
+    all.extend(pairs.map(|(x, y)| [x, y]));
+    rank(&mut all, 0);
+    rank(&mut all, 1);
+    let middle = 0.5 * (all.len() as f64 + 1.0);
     let (mut xx, mut yy, mut xy) = (0.0, 0.0, 0.0);
-    for (a, b) in x.iter().map(|r| r - middle).zip(y.iter().map(|r| r - middle)) {
+    for [a, b] in all.iter().map(|pair| pair.map(|rank| rank - middle)) {
         xx += a.sq();
         yy += b.sq();
         xy += a * b;
     }
     let correlation = if xx > 0.0 && yy > 0.0 { xy / (xx.sqrt() * yy.sqrt()) } else { f64::NAN };
-    (correlation, x.len())
+    (correlation, all.len())
 }
 
-/// Puts in place of each value its rank, from one; equal values get the mean of their ranks.
-fn rank(values: &mut [f64]) {
+/// Puts the pairs in the order of their values on one side, and in place of each value its rank, from one;
+/// equal values get the mean of their ranks.
+fn rank(pairs: &mut [[f64; 2]], side: usize) {
     // Zeros of either sign are equal.
-    for value in &mut *values {
-        *value += 0.0;
+    for pair in &mut *pairs {
+        pair[side] += 0.0;
     }
-    let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_unstable_by(|a, b| values[*a].total_cmp(&values[*b]));
+    pairs.sort_unstable_by(|a, b| a[side].total_cmp(&b[side]));
     let mut before = 0;
-    while let Some(first) = order.get(before) {
-        let value = values[*first];
-        let rest = order[before..].iter();
-        let equal = rest.take_while(|at| values[**at].total_cmp(&value).is_eq()).count();
-        for at in &order[before..before + equal] {
-            values[*at] = before as f64 + 0.5 * (equal as f64 + 1.0);
+    for equal in pairs.chunk_by_mut(|a, b| a[side].total_cmp(&b[side]).is_eq()) {
+        let count = equal.len();
+        for pair in equal {
+            pair[side] = before as f64 + 0.5 * (count as f64 + 1.0);
         }
-        before += equal;
+        before += count;
     }
 }
 
@@ -55,12 +55,14 @@ mod tests {
 
     #[test]
     fn equal_values_share_their_ranks() {
-        let ranks = |mut values: Vec<f64>| {
-            rank(&mut values);
-            values
-        };
-        assert_eq!(ranks(vec![3.0, 1.0, 3.0, 2.0]), [3.5, 1.0, 3.5, 2.0]);
-        assert_eq!(ranks(vec![0.0, -0.0]), [1.5, 1.5]);
+        let mut pairs = [[3.0, 7.0], [1.0, 8.0], [3.0, 9.0], [2.0, 0.0]];
+        rank(&mut pairs, 0);
+        // Those that are equal come in any order.
+        pairs[2..].sort_by(|a, b| a[1].total_cmp(&b[1]));
+        assert_eq!(pairs, [[1.0, 8.0], [2.0, 0.0], [3.5, 7.0], [3.5, 9.0]]);
+        let mut zeros = [[5.0, 0.0], [5.0, -0.0]];
+        rank(&mut zeros, 1);
+        assert_eq!(zeros, [[5.0, 1.5]; 2]);
     }
 
     #[test]

@@ -22,10 +22,22 @@ pub(super) struct Sample {
     metrics: usize,
 }
 
+/// Twice the index, and one more where it failed: there are many of them.
 #[derive(Clone, Copy, Debug)]
-struct Flight {
-    index: u64,
-    failed: bool,
+struct Flight(u64);
+
+impl Flight {
+    fn new(index: u64, failed: bool) -> Self {
+        Self(index << 1 | u64::from(failed))
+    }
+
+    fn index(self) -> u64 {
+        self.0 >> 1
+    }
+
+    fn failed(self) -> bool {
+        self.0 & 1 == 1
+    }
 }
 
 /// A flight of the sample.
@@ -84,8 +96,7 @@ impl Sample {
         if !kept(row.index, self.every) {
             return;
         }
-        let failed = row.failure.is_some();
-        self.flights.push(Flight { index: row.index, failed });
+        self.flights.push(Flight::new(row.index, row.failure.is_some()));
         for (texts, input) in self.texts.iter_mut().zip(&row.inputs) {
             self.values.push(match input {
                 Input::Number(x) => *x,
@@ -106,7 +117,7 @@ impl Sample {
         self.every *= 2;
         let (width, mut count) = (self.width(), 0);
         for at in 0..self.flights.len() {
-            if kept(self.flights[at].index, self.every) {
+            if kept(self.flights[at].index(), self.every) {
                 self.flights[count] = self.flights[at];
                 self.values.copy_within(at * width..(at + 1) * width, count * width);
                 count += 1;
@@ -121,8 +132,8 @@ impl Sample {
         let flight = self.flights.get(at)?;
         let width = self.width();
         Some(Sampled {
-            index: flight.index,
-            failed: flight.failed,
+            index: flight.index(),
+            failed: flight.failed(),
             values: &self.values[at * width..(at + 1) * width],
             texts: &self.texts,
         })
@@ -140,7 +151,7 @@ impl Sample {
 
     /// At most `count` of them, thinned on in the same way.
     pub fn at_most(&self, count: usize) -> impl Iterator<Item = Sampled<'_>> {
-        let left = |every| self.flights.iter().filter(|row| kept(row.index, every)).count();
+        let left = |every| self.flights.iter().filter(|flight| kept(flight.index(), every)).count();
         let mut every = self.every;
         while left(every) > count && every < 1 << 63 {
             every *= 2;
