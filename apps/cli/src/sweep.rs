@@ -46,15 +46,18 @@ pub fn sweep(args: &Sweep, common: &Common) -> Result<(), Failure> {
     };
     announce(&drive, args, common)?;
     let held = files::holds(&args.out, &campaign).map_err(broken)?;
+    if matches!(held, Held::Nothing | Held::This) {
+        drive.claim().map_err(broken)?;
+    }
     allowed(&held, args.resume, &args.out)?;
     if held == Held::Nothing {
         check(&drive, common)?;
     }
     fs::create_dir_all(&args.out).map_err(broken)?;
     let _lock = lock(&args.out)?;
+    terminal::ORDERLY.store(true, Ordering::Relaxed);
     // Resumed, the plan is written once more: someone may have changed it.
     files::begin(&Native, &args.out, &campaign).map_err(broken)?;
-    terminal::ORDERLY.store(true, Ordering::Relaxed);
     let end = fly(&drive, common).map_err(|error| unflown(Failure::out(&args.out, &error)))?;
     let End::Complete(flights) = end else {
         terminal::warn("stopped; what is flown is kept: the same command with --resume goes on");

@@ -215,6 +215,52 @@ fn flights_of_another_campaign_or_version_are_not_mixed_in() {
     assert!(bench.results("one") == whole, "nothing was touched");
 }
 
+/// The journal says for itself whose it is, also where nothing else is left.
+#[test]
+fn a_journal_alone_is_gone_on_with_by_its_own_campaign_only() {
+    let bench = Bench::new();
+    let run = |out: &str, more: &[&str]| {
+        let output = bench.run(out, &[&SHORT[..], more].concat());
+        (output.status.code(), message(&output))
+    };
+    assert_eq!(run("one", &[]).0, Some(0));
+    let (whole, about) = (bench.results("one"), bench.path("one").join("campaign.json"));
+    fs::write(&about, "").expect("written");
+    let (code, message) = run("one", &["--resume"]);
+    assert!(code == Some(2) && message.contains("campaign.json: EOF"), "{message}");
+    assert!(message.contains("remove it and give the command without --resume"), "{message}");
+    fs::remove_file(&about).expect("removed");
+    for (more, wanted) in [
+        (["--set", "run.seed=9"], "journal.bin: belongs to another campaign"),
+        (["--shard", "1/2"], "journal.bin: holds this campaign as a whole"),
+    ] {
+        let (code, message) = run("one", &more);
+        assert!(code == Some(2) && message.contains(wanted), "{message}");
+        assert!(!about.exists(), "the folder was claimed");
+    }
+    assert_eq!(run("one", &[]), (Some(0), String::new()));
+    assert!(bench.results("one") == whole);
+    assert_eq!(run("part", &["--shard", "1/2"]).0, Some(0));
+    for more in [&["--shard", "2/2"][..], &["--shard", "2/2", "--resume"], &["--resume"]] {
+        let (code, message) = run("part", more);
+        assert!(code == Some(2) && message.contains("give --shard 1/2 to go on"), "{message}");
+    }
+}
+
+#[test]
+fn a_file_that_cannot_be_used_is_named() {
+    let bench = Bench::new();
+    for name in ["campaign.json", "journal.bin", "plan.csv.part", "results.parquet"] {
+        fs::create_dir_all(bench.path("one").join(name)).expect("a folder");
+        let output = bench.run("one", &SHORT);
+        let message = message(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(&format!("one/{name}: ")), "{message}");
+        fs::remove_dir(bench.path("one").join(name)).expect("still empty");
+        let _ = fs::remove_file(bench.path("one").join("campaign.json"));
+    }
+}
+
 #[test]
 fn a_merge_writes_over_no_other_campaign() {
     let bench = Bench::new();

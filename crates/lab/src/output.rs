@@ -12,8 +12,8 @@ use crate::scenario::Scenario;
 use crate::sensitivity::Spread;
 
 pub use folder::{Folder, Halt, halt};
-pub(crate) use refused::refuse;
 pub use refused::{Refused, advise};
+pub(crate) use refused::{refuse, with_help};
 
 /// Version of the program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

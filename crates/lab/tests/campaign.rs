@@ -13,6 +13,7 @@ use stormpetrel_lab::campaign::drive::{Drive, End, JOURNAL};
 use stormpetrel_lab::campaign::files;
 use stormpetrel_lab::campaign::journal::{self, CHUNK, Index};
 use stormpetrel_lab::campaign::plan::Campaign;
+use stormpetrel_lab::scenario::fault::Faults;
 use tempfile::TempDir;
 
 const FILE: &str = r#"
@@ -171,6 +172,30 @@ fn the_answer_that_is_good_enough_does_not_depend_on_the_threads() {
     assert!(matches!(ends[0], End::Complete(n) if n < 1000), "{ends:?}");
 }
 
+/// The second chunk is refused at its first flight, long before the first one is at its last.
+#[test]
+fn of_flights_that_cannot_be_the_first_of_the_plan_is_told() {
+    let place = Place::new();
+    let mut plan = "index,seed,vehicle.mass,observer.law\n".to_owned();
+    for index in 0..4 * CHUNK {
+        let mass = if [CHUNK - 1, CHUNK, 3 * CHUNK].contains(&index) { "-1.0" } else { "0.625" };
+        plan += &format!("{index},{index},{mass},hosm\n");
+    }
+    let mut campaign = place.campaign(&[]);
+    campaign.replay(&plan).expect("numbers");
+    for threads in [1, 2, 8] {
+        let folder = place.sub(&format!("bad{threads}"));
+        let stop = AtomicBool::new(false);
+        let drive = Drive { threads, ..drive(&campaign, &folder, &stop) };
+        let error = drive.fly(&mut |_| {}).expect_err("a negative mass");
+        let faults = error.get_ref().and_then(|inner| inner.downcast_ref::<Faults>());
+        let Faults(faults) = faults.expect("faults");
+        assert_eq!(faults.len(), 1);
+        let message = &faults[0].message;
+        assert!(message.starts_with("flight 63 of the plan: `vehicle.mass` = -1"), "{message}");
+    }
+}
+
 #[test]
 fn a_journal_of_another_campaign_is_refused() {
     let place = Place::new();
@@ -180,6 +205,8 @@ fn a_journal_of_another_campaign_is_refused() {
     let stop = AtomicBool::new(false);
     let error = drive(&other, &folder, &stop).fly(&mut |_| {}).expect_err("another seed");
     assert!(error.to_string().contains("belongs to another campaign"), "{error}");
+    let claimed = drive(&other, &folder, &stop).claim().expect_err("another seed");
+    assert_eq!(claimed.to_string(), error.to_string());
 }
 
 /// As a file system may leave it after a power cut.

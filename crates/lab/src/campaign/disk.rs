@@ -4,6 +4,8 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, Write};
 use std::path::Path;
 
+use crate::output::advise;
+
 /// What a campaign asks of the file system.
 pub trait Disk: Sync {
     /// A new empty file, replacing one of the same name.
@@ -91,10 +93,11 @@ pub fn replace(
     let mut beside = path.as_os_str().to_owned();
     beside.push(".part");
     let beside = Path::new(&beside);
-    let mut file = disk.create(beside)?;
+    let mut file = disk.create(beside).map_err(|error| advise(beside, &error))?;
     let filled = fill(file.as_mut()).and_then(|()| file.flush()).and_then(|()| file.sync());
     drop(file);
-    let done = filled.and_then(|()| disk.rename(beside, path));
+    let renamed = || disk.rename(beside, path).map_err(|error| advise(path, &error));
+    let done = filled.and_then(|()| renamed());
     if done.is_err() {
         let _ = std::fs::remove_file(beside);
     }

@@ -9,11 +9,11 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Mutex, PoisonError};
 
 use super::disk::Disk;
-use super::journal::{CHUNK, Index, Journal, Owner, Record, Tally};
+use super::journal::{self, CHUNK, Index, Journal, Owner, Record, Tally};
 use super::plan::Campaign;
 use super::summary::wilson;
 use super::worker::Worker;
-use crate::output::refuse;
+use crate::output::{refuse, with_help};
 
 /// How a campaign is flown.
 #[derive(Clone, Copy, Debug)]
@@ -83,6 +83,34 @@ impl Drive<'_> {
         }
     }
 
+    /// Refuses a folder whose journal is of another campaign, or of another part of this one.
+    ///
+    /// # Errors
+    /// Whose it is, and what to do; a journal that cannot be read or is damaged at its beginning.
+    pub fn claim(&self) -> io::Result<()> {
+        let path = self.folder.join(JOURNAL);
+        journal::owner(&path)?.map_or(Ok(()), |owner| self.own(&path, owner))
+    }
+
+    fn own(&self, path: &Path, owner: Owner) -> io::Result<()> {
+        let ours = self.owner();
+        if owner == ours {
+            return Ok(());
+        }
+        if owner.identity == ours.identity && owner.shards == 1 {
+            let help = "leave out --shard to go on with it, or give another --out";
+            return Err(refuse(path, "holds this campaign as a whole", help));
+        }
+        if owner.identity == ours.identity {
+            let part = format!("{}/{}", owner.shard + 1, owner.shards);
+            let message = format!("holds part {part} of this campaign");
+            let help = format!("give --shard {part} to go on with it, or another --out");
+            return Err(refuse(path, &message, &help));
+        }
+        let help = "give another --out; to resume, give the same file, --variant, --set and --plan as before";
+        Err(refuse(path, "belongs to another campaign", help))
+    }
+
     /// Flies what the journal does not have yet; `watch` is told of every chunk.
     ///
     /// # Errors
@@ -91,15 +119,11 @@ impl Drive<'_> {
     pub fn fly(&self, watch: &mut dyn FnMut(&Progress)) -> io::Result<End> {
         let path = self.folder.join(JOURNAL);
         let index = Index::read(&path)?;
-        if index.as_ref().is_some_and(|index| index.owner() != self.owner()) {
-            let message = "belongs to another campaign, or to another part of it";
-            return Err(refuse(
-                &path,
-                message,
-                "give the same --shard as before, or another --out",
-            ));
+        if let Some(index) = &index {
+            self.own(&path, index.owner())?;
         }
-        let mut journal = Journal::open(self.disk, &path, &self.owner(), index.as_ref())?;
+        let mut journal = Journal::open(self.disk, &path, &self.owner(), index.as_ref())
+            .map_err(|error| halted(&path, &error))?;
         let mut count = Count::new(self, index.iter().flat_map(Index::tallies));
         let has = |chunk: &u64| index.as_ref().is_some_and(|index| index.has(*chunk));
         let waiting = Mutex::new(self.chunks().filter(|chunk| !has(chunk)));
@@ -122,7 +146,9 @@ impl Drive<'_> {
                 });
             }
             drop(send);
-            let kept = keep(receive, &mut journal, &mut count, &enough, watch);
+            let append =
+                |record: &Record| journal.append(record).map_err(|error| halted(&path, &error));
+            let kept = keep(receive, append, &mut count, &enough, watch);
             if kept.is_err() {
                 // Lets the threads end: nothing more can be kept.
                 enough.store(true, Ordering::Relaxed);
@@ -153,6 +179,12 @@ pub fn identity(campaign: &Campaign) -> u64 {
     })
 }
 
+/// A journal that could not be written on.
+fn halted(path: &Path, error: &io::Error) -> io::Error {
+    let help = "what is flown is kept: mend that, and the same command with --resume goes on";
+    with_help(path, error, help)
+}
+
 /// A chunk and what came of it.
 type Flown = (u64, io::Result<Record>);
 
@@ -160,7 +192,7 @@ type Flown = (u64, io::Result<Record>);
 /// told: all chunks before it were handed out before it, and are waited for.
 fn keep(
     receive: Receiver<Flown>,
-    journal: &mut Journal,
+    mut append: impl FnMut(&Record) -> io::Result<()>,
     count: &mut Count,
     enough: &AtomicBool,
     watch: &mut dyn FnMut(&Progress),
@@ -169,7 +201,7 @@ fn keep(
     for (chunk, record) in receive {
         match record {
             Ok(record) => {
-                journal.append(&record)?;
+                append(&record)?;
                 count.add(record.chunk(), record.tally());
                 watch(&count.progress());
             }

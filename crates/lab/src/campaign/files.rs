@@ -14,7 +14,7 @@ use super::plan::Campaign;
 use super::report::{Story, html};
 use super::result::{Columns, Row};
 use super::summary::Summary;
-use crate::output::{REVISION, VERSION, refuse};
+use crate::output::{REVISION, VERSION, refuse, with_help};
 
 /// What the campaign is: written first, compared before it is resumed.
 pub const CAMPAIGN: &str = "campaign.json";
@@ -28,6 +28,9 @@ pub const SUMMARY: &str = "summary.json";
 pub const REPORT: &str = "report.html";
 /// Worst flights that are kept for the report.
 pub const WORST: usize = 10;
+
+/// What to do with a [`CAMPAIGN`] that cannot be read: the journal says for itself whose it is.
+const ANEW: &str = "remove it and give the command without --resume: what is flown is kept";
 
 /// `campaign.json`.
 pub fn about(campaign: &Campaign) -> Json {
@@ -91,11 +94,10 @@ pub fn holds(folder: &Path, campaign: &Campaign) -> io::Result<Held> {
     let text = match fs::read_to_string(&path) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Held::Nothing),
-        Err(error) => return Err(error),
+        Err(error) => return Err(with_help(&path, &error, ANEW)),
     };
-    let found: Json = serde_json::from_str(&text).map_err(|error| {
-        refuse(&path, &error.to_string(), "remove the folder, or give another --out")
-    })?;
+    let found: Json =
+        serde_json::from_str(&text).map_err(|error| refuse(&path, &error.to_string(), ANEW))?;
     let ours = about(campaign);
     Ok(if found["campaign"] != ours["campaign"] {
         Held::Another

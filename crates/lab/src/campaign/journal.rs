@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use super::disk::{Disk, Sink};
 use super::result::Row;
 use crate::fly::Failure;
-use crate::output::refuse;
+use crate::output::{advise, refuse, with_help};
 use stormpetrel_plant::flight::Cause;
 
 /// Flights in a record.
@@ -212,37 +212,58 @@ fn damaged(path: &Path, at: u64, what: &str) -> io::Error {
     refuse(path, &message, "restore it from a copy, or remove the folder and fly again")
 }
 
+/// What the journal at `path` belongs to; empty where there is none.
+///
+/// # Errors
+/// Where it cannot be read or is damaged at its beginning.
+pub fn owner(path: &Path) -> io::Result<Option<Owner>> {
+    Ok(open(path)?.map(|(_, owner)| owner))
+}
+
+/// Opens the journal at `path` behind its header; empty where nothing is in it.
+fn open(path: &Path) -> io::Result<Option<(File, Owner)>> {
+    let mut file = match File::open(path) {
+        Ok(file) => file,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(unread(path, &error)),
+    };
+    let mut header = Vec::new();
+    let read = Read::by_ref(&mut file).take(HEADER as u64).read_to_end(&mut header);
+    read.map_err(|error| unread(path, &error))?;
+    let Ok(header) = <[u8; HEADER]>::try_from(header.as_slice()) else {
+        // Died while beginning: a prefix of a header is nothing flown, other bytes are not ours.
+        let ours = header.iter().zip(MARK).all(|(a, b)| *a == b);
+        return if ours { Ok(None) } else { Err(damaged(path, 0, "not a journal")) };
+    };
+    match Owner::read(&header) {
+        Some(owner) => Ok(Some((file, owner))),
+        None => Err(damaged(path, 0, "the header does not have its checksum")),
+    }
+}
+
+/// A journal that the system does not let us read; errors that say what to do stay.
+fn unread(path: &Path, error: &io::Error) -> io::Error {
+    if error.get_ref().is_some() {
+        return advise(path, error);
+    }
+    with_help(path, error, "it must be a file that can be read: mend that, or give another --out")
+}
+
 impl Index {
     /// Reads the journal at `path`, which may not exist yet.
     ///
     /// # Errors
     /// Where it cannot be read or is damaged.
     pub fn read(path: &Path) -> io::Result<Option<Self>> {
-        let file = match File::open(path) {
-            Ok(file) => file,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(error),
-        };
+        let Some((file, owner)) = open(path)? else { return Ok(None) };
         let length = file.metadata()?.len();
         let mut file = BufReader::with_capacity(1 << 16, file);
-        let mut header = [0; HEADER];
-        if length < HEADER as u64 {
-            // Died while beginning: a prefix of a header is nothing flown, other bytes are not ours.
-            let mut bytes = Vec::new();
-            file.read_to_end(&mut bytes)?;
-            let ours = bytes.iter().zip(MARK).all(|(a, b)| *a == b);
-            return if ours { Ok(None) } else { Err(damaged(path, 0, "not a journal")) };
-        }
-        file.read_exact(&mut header)?;
-        let Some(owner) = Owner::read(&header) else {
-            return Err(damaged(path, 0, "the header does not have its checksum"));
-        };
         // In one piece: growing would leave copies behind.
         let record = size(CHUNK, owner.metrics.min(1 << 20)) - HEADER as u64;
         let records = Vec::with_capacity(usize::try_from(length / record + 1).unwrap_or(0));
         let path = path.to_owned();
         let mut index = Self { path, owner, records, end: HEADER as u64 };
-        while index.read_record(&mut file, length)? {}
+        while index.read_record(&mut file, length).map_err(|error| unread(&index.path, &error))? {}
         index.sort()?;
         Ok(Some(index))
     }
@@ -337,9 +358,12 @@ impl Index {
     /// Where it cannot be read any more, or has changed since.
     pub fn chunk(&self, chunk: u64) -> io::Result<Option<Vec<Entry>>> {
         let Some(record) = self.find(chunk) else { return Ok(None) };
-        let mut file = File::open(&self.path)?;
-        file.seek(SeekFrom::Start(record.begin))?;
-        self.flights(record, &mut file).map(Some)
+        let read = || {
+            let mut file = File::open(&self.path)?;
+            file.seek(SeekFrom::Start(record.begin))?;
+            self.flights(record, &mut file)
+        };
+        read().map(Some).map_err(|error| unread(&self.path, &error))
     }
 }
 

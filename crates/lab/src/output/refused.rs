@@ -23,14 +23,23 @@ impl std::error::Error for Refused {}
 
 /// A path that cannot be used.
 pub(crate) fn refuse(path: &Path, message: &str, help: &str) -> io::Error {
+    refuse_as(ErrorKind::Other, path, message, help)
+}
+
+fn refuse_as(kind: ErrorKind, path: &Path, message: &str, help: &str) -> io::Error {
     let (path, message, help) = (path.to_owned(), message.to_owned(), help.to_owned());
-    io::Error::other(Refused { path, message, help })
+    io::Error::new(kind, Refused { path, message, help })
+}
+
+/// What the system said of a path, with what to do about it.
+pub(crate) fn with_help(path: &Path, error: &io::Error, help: &str) -> io::Error {
+    refuse_as(error.kind(), path, &error.to_string(), help)
 }
 
 /// What the system refused, with the path and what to do; errors that have both already stay.
 pub fn advise(path: &Path, error: &io::Error) -> io::Error {
     if let Some(refused) = error.get_ref().and_then(|inner| inner.downcast_ref::<Refused>()) {
-        return refuse(&refused.path, &refused.message, &refused.help);
+        return refuse_as(error.kind(), &refused.path, &refused.message, &refused.help);
     }
     let help = match error.kind() {
         ErrorKind::NotADirectory => "a part of the path is a file: give another --out",
@@ -44,5 +53,5 @@ pub fn advise(path: &Path, error: &io::Error) -> io::Error {
         ErrorKind::InvalidFilename => "give a shorter name, without special characters",
         _ => "give another --out",
     };
-    refuse(path, &error.to_string(), help)
+    with_help(path, error, help)
 }
