@@ -1,6 +1,5 @@
 //! Arguments and help.
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args as Group, Parser, Subcommand};
@@ -134,9 +133,9 @@ pub struct Sweep {
     /// Go on with the campaign in the folder
     #[arg(long)]
     pub resume: bool,
-    /// Threads; all cores unless given
-    #[arg(long, value_name = "N")]
-    pub threads: Option<NonZeroUsize>,
+    /// Threads, at most 1024; all cores unless given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
     /// Fly part I of N only, I from 1; `merge` joins the parts
     #[arg(long, value_name = "I/N", conflicts_with = "until_interval")]
     pub shard: Option<String>,

@@ -152,7 +152,7 @@ fn what_cannot_be_flown_is_refused_with_advice() {
     )
     .expect("a file");
     let grid = r#"sweep=[{ path = "vehicle.mass", grid = [0.5, 0.7, 300] }]"#;
-    let cases: [(&[&str], &str); 12] = [
+    let cases: [(&[&str], &str); 13] = [
         (
             &["--until-interval", "0.1", "--set", "campaign.flights=0", "--set", grid],
             "grids and lists are counted through",
@@ -161,6 +161,7 @@ fn what_cannot_be_flown_is_refused_with_advice() {
         (&["--set", "campaign.flights=1e12"], "must lie in 0 to 1e8"),
         (&["--set", "campaign.flights=1e8", "--set", "run.duration=1e4"], "would take"),
         (&["--shard", "9/8"], "must be I/N"),
+        (&["--threads", "2000"], "1..=1024"),
         (&["--until-interval", "2"], "must lie between 0 and 1"),
         (&["--logs", "best=3"], "worst=K"),
         (&["--resume"], "there is no campaign to resume"),

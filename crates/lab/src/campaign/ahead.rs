@@ -1,8 +1,9 @@
 //! What is known of a campaign before its first flight: whether every flight can be built, and how long
 //! all of them take.
 
+use std::io;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Barrier, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use stormpetrel_control::real::Real;
@@ -10,9 +11,9 @@ use stormpetrel_control::real::Real;
 use super::drive::{Drive, rows};
 use super::journal::{CHUNK, Record};
 use super::plan::Campaign;
-use super::worker::{Worker, built};
+use super::worker::{Worker, built, start};
 use crate::fly::LANES;
-use crate::scenario::fault::Faults;
+use crate::scenario::fault::{Fault, Faults};
 
 impl Drive<'_> {
     /// Builds every flight of this part of the plan; `watch` is told how many are done.
@@ -48,12 +49,13 @@ impl Drive<'_> {
             }
             None
         };
-        let found = std::thread::scope(|scope| {
-            let threads: Vec<_> = (0..self.threads).map(|_| scope.spawn(first_of_thread)).collect();
+        std::thread::scope(|scope| {
+            let threads =
+                start(scope, self.threads, first_of_thread).map_err(|error| no_thread(&error))?;
+            // A flight that breaks the program is told when its turn comes.
             let found = threads.into_iter().filter_map(|thread| thread.join().ok()?);
-            found.min_by_key(|(index, _)| *index)
-        });
-        found.map_or(Ok(()), |(_, faults)| Err(faults))
+            found.min_by_key(|(index, _)| *index).map_or(Ok(()), |(_, faults)| Err(faults))
+        })
     }
 }
 
@@ -63,13 +65,12 @@ impl Drive<'_> {
 /// # Errors
 /// Where one of these flights cannot be built.
 pub fn estimate(campaign: &Campaign, flights: u64, threads: usize) -> Result<Duration, Faults> {
-    let together = Barrier::new(threads);
-    let time = || {
-        together.wait();
-        time_of_chunk(campaign)
-    };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    // More threads than cores take turns.
+    let threads = threads.clamp(1, cores);
     let times = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(time)).collect();
+        let threads =
+            start(scope, threads, || time_of_chunk(campaign)).map_err(|error| no_thread(&error))?;
         // A flight that breaks the program is told when its turn comes.
         threads.into_iter().filter_map(|thread| thread.join().ok()).collect::<Result<Vec<_>, _>>()
     })?;
@@ -80,6 +81,10 @@ pub fn estimate(campaign: &Campaign, flights: u64, threads: usize) -> Result<Dur
     let whole = slowest * chunks as f64 * (lanes as f64 / CHUNK as f64);
     // Ten thousand years are enough to say no.
     Ok(Duration::from_secs_f64(if whole < 3e11 { whole } else { 3e11 }))
+}
+
+fn no_thread(error: &io::Error) -> Faults {
+    Fault::general(format!("no thread could be started: {error}")).into()
 }
 
 /// Time for the first chunk (s). At most 500 ticks are flown: what they take beyond the first grows with

@@ -12,7 +12,7 @@ use super::disk::Disk;
 use super::journal::{self, CHUNK, Index, Journal, Owner, Record, Tally};
 use super::plan::Campaign;
 use super::summary::wilson;
-use super::worker::Worker;
+use super::worker::{Worker, start};
 use crate::output::{refuse, with_help};
 
 /// How a campaign is flown.
@@ -133,22 +133,19 @@ impl Drive<'_> {
         watch(&count.progress());
         std::thread::scope(|scope| {
             let (send, receive) = sync_channel(self.threads);
-            for _ in 0..self.threads {
-                let (send, next, enough) = (send.clone(), &next, &enough);
-                scope.spawn(move || {
-                    let mut worker = Worker::new(self.campaign);
-                    while !self.stop.load(Ordering::Relaxed) && !enough.load(Ordering::Relaxed) {
-                        let Some(chunk) = next() else { break };
-                        if send.send((chunk, worker.fly_chunk(chunk))).is_err() {
-                            break;
-                        }
+            let (next, enough) = (&next, &enough);
+            start(scope, self.threads, move || {
+                let mut worker = Worker::new(self.campaign);
+                while !self.stop.load(Ordering::Relaxed) && !enough.load(Ordering::Relaxed) {
+                    let Some(chunk) = next() else { break };
+                    if send.send((chunk, worker.fly_chunk(chunk))).is_err() {
+                        break;
                     }
-                });
-            }
-            drop(send);
+                }
+            })?;
             let append =
                 |record: &Record| journal.append(record).map_err(|error| halted(&path, &error));
-            let kept = keep(receive, append, &mut count, &enough, watch);
+            let kept = keep(receive, append, &mut count, enough, watch);
             if kept.is_err() {
                 // Lets the threads end: nothing more can be kept.
                 enough.store(true, Ordering::Relaxed);

@@ -2,6 +2,7 @@
 
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::thread::{Builder, Scope, ScopedJoinHandle};
 
 use stormpetrel_plant::dispatch::Width;
 
@@ -66,6 +67,26 @@ impl<'a> Worker<'a> {
         self.scenarios.clear();
         Ok(outcomes.into_iter().map(|outcome| entry(&outcome, &self.columns)))
     }
+}
+
+/// Starts so many threads, or as many as the system gives: at least one.
+///
+/// # Errors
+/// Where there is not even one.
+pub(super) fn start<'scope, T: Send + 'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    threads: usize,
+    work: impl FnOnce() -> T + Clone + Send + 'scope,
+) -> io::Result<Vec<ScopedJoinHandle<'scope, T>>> {
+    let mut started = Vec::new();
+    for _ in 0..threads {
+        match Builder::new().spawn_scoped(scope, work.clone()) {
+            Ok(thread) => started.push(thread),
+            Err(error) if started.is_empty() => return Err(error),
+            Err(_) => break,
+        }
+    }
+    Ok(started)
 }
 
 /// A flight of the plan.
