@@ -87,23 +87,29 @@ fn no_thread(error: &io::Error) -> Faults {
     Fault::general(format!("no thread could be started: {error}")).into()
 }
 
-/// Time for the first chunk (s). At most 500 ticks are flown: what they take beyond the first grows with
-/// their number.
+/// Time for the first chunk (s). It is flown for a few milliseconds, at most 500 ticks: what they take beyond
+/// the first grows with their number.
 fn time_of_chunk(campaign: &Campaign) -> Result<f64, Faults> {
+    const ENOUGH: f64 = 5e-3;
     let ticks = campaign.scenario.ticks() as f64;
-    let long = if ticks < 500.0 { ticks } else { 500.0 };
     let mut worker = Worker::new(campaign);
-    let mut fastest = [f64::INFINITY; 2];
     // What the first times wait for, such as memory, a campaign does not wait for again.
-    for _ in 0..3 {
-        for (fastest, ticks) in fastest.iter_mut().zip([1.0, long]) {
+    let mut faster_of_two = |ticks: f64| -> Result<f64, Faults> {
+        let mut fastest = f64::INFINITY;
+        for _ in 0..2 {
             let begin = Instant::now();
             fly_cut(campaign, ticks, &mut worker)?;
-            *fastest = Real::min(*fastest, begin.elapsed().as_secs_f64());
+            fastest = Real::min(fastest, begin.elapsed().as_secs_f64());
         }
+        Ok(fastest)
+    };
+    let one = faster_of_two(1.0)?;
+    let (mut flown, mut all) = (1.0, one);
+    while all < one + ENOUGH && flown < Real::min(ticks, 500.0) {
+        flown = Real::min(8.0 * flown, Real::min(ticks, 500.0));
+        all = faster_of_two(flown)?;
     }
-    let [one, all] = fastest;
-    Ok(if long > 1.0 { one + (all - one) * (ticks - 1.0) / (long - 1.0) } else { one })
+    Ok(if flown > 1.0 { one + (all - one) * (ticks - 1.0) / (flown - 1.0) } else { one })
 }
 
 /// Builds and flies the first chunk to so many ticks.
