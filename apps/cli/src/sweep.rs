@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use indicatif::ProgressBar;
 use stormpetrel_lab::campaign::ahead::estimate;
 use stormpetrel_lab::campaign::disk::Native;
-use stormpetrel_lab::campaign::drive::{Drive, End, JOURNAL, Progress, identity};
+use stormpetrel_lab::campaign::drive::{Drive, End, JOURNAL, Progress, claim, identity};
 use stormpetrel_lab::campaign::files::{self, Held};
 use stormpetrel_lab::campaign::journal::Index;
 use stormpetrel_lab::campaign::plan::Campaign;
@@ -115,6 +115,7 @@ pub fn merge(args: &Merge, common: &Common) -> Result<(), Failure> {
     let held = files::holds(&args.out, &campaign).map_err(broken)?;
     // The parts may be joined again, and in the folder of one of them.
     allowed(&held, held == Held::This, &args.out)?;
+    claim(&args.out, &campaign).map_err(broken)?;
     fs::create_dir_all(&args.out).map_err(broken)?;
     let _lock = lock(&args.out)?;
     if held == Held::Nothing {

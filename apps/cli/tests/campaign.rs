@@ -283,6 +283,10 @@ fn a_merge_writes_over_no_other_campaign() {
     assert!(code == Some(2) && message.contains("flights 64 to 127 are missing"), "{message}");
     assert!(message.contains("give the folders of all parts"), "{message}");
     assert!(!bench.path("joined").exists() && bench.results("other") == other);
+    fs::remove_file(bench.path("other").join("campaign.json")).expect("removed");
+    let (code, message) = merge("other", &["first", "second"]);
+    assert!(code == Some(2) && message.contains("belongs to another campaign"), "{message}");
+    assert!(bench.results("other") == other && !bench.path("other/campaign.json").exists());
     for _ in 0..2 {
         assert_eq!(merge("joined", &["first", "second"]), (Some(0), String::new()));
         assert!(bench.results("joined")[..2] == bench.results("whole")[..2]);

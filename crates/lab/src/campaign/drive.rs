@@ -107,8 +107,7 @@ impl Drive<'_> {
             let help = format!("give --shard {part} to go on with it, or another --out");
             return Err(refuse(path, &message, &help));
         }
-        let help = "give another --out; to resume, give the same file, --variant, --set and --plan as before";
-        Err(refuse(path, "belongs to another campaign", help))
+        Err(foreign(path))
     }
 
     /// Flies what the journal does not have yet; `watch` is told of every chunk.
@@ -160,6 +159,24 @@ impl Drive<'_> {
         let (shard, shards) = self.shard;
         (0..self.campaign.flights().div_ceil(CHUNK)).filter(move |chunk| chunk % shards == shard)
     }
+}
+
+/// Refuses a folder whose journal is of another campaign; which part of this one it has does not matter.
+///
+/// # Errors
+/// That it is, and what to do; a journal that cannot be read or is damaged at its beginning.
+pub fn claim(folder: &Path, campaign: &Campaign) -> io::Result<()> {
+    let path = folder.join(JOURNAL);
+    match journal::owner(&path)? {
+        Some(owner) if owner.identity != identity(campaign) => Err(foreign(&path)),
+        _ => Ok(()),
+    }
+}
+
+fn foreign(path: &Path) -> io::Error {
+    let help =
+        "give another --out; to resume, give the same file, --variant, --set and --plan as before";
+    refuse(path, "belongs to another campaign", help)
 }
 
 /// The flights of a chunk.
