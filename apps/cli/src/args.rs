@@ -137,7 +137,7 @@ pub struct Sweep {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Fly part I of N only, I from 1; `merge` joins the parts
-    #[arg(long, value_name = "I/N", conflicts_with = "until_interval")]
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["until_interval", "logs"])]
     pub shard: Option<String>,
     /// Stop once the 95 % interval of the success probability is this narrow; not over grids flown through once
     #[arg(long, value_name = "WIDTH")]

@@ -10,7 +10,8 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
-use stormpetrel_lab::campaign::ahead::estimate;
+use serde_json::json;
+use stormpetrel_lab::campaign::ahead::{Estimate, estimate};
 use stormpetrel_lab::campaign::disk::Native;
 use stormpetrel_lab::campaign::drive::{Drive, End, JOURNAL, Progress, claim, identity};
 use stormpetrel_lab::campaign::files::{self, Held};
@@ -45,16 +46,13 @@ pub fn sweep(args: &Sweep, common: &Common) -> Result<(), Failure> {
         stop: &terminal::STOP,
     };
     announce(&drive, args, common)?;
-    let held = files::holds(&args.out, &campaign).map_err(broken)?;
-    if matches!(held, Held::Nothing | Held::This) {
-        drive.claim().map_err(broken)?;
-    }
-    allowed(&held, args.resume, &args.out)?;
-    if held == Held::Nothing {
+    if ask(&drive, args)? == Held::Nothing {
         check(&drive, common)?;
     }
     fs::create_dir_all(&args.out).map_err(broken)?;
     let _lock = lock(&args.out)?;
+    // Somebody may have been faster.
+    ask(&drive, args)?;
     terminal::ORDERLY.store(true, Ordering::Relaxed);
     // Resumed, the plan is written once more: someone may have changed it.
     files::begin(&Native, &args.out, &campaign).map_err(broken)?;
@@ -63,6 +61,10 @@ pub fn sweep(args: &Sweep, common: &Common) -> Result<(), Failure> {
         terminal::warn("stopped; what is flown is kept: the same command with --resume goes on");
         return Err(Failure::Interrupted);
     };
+    if shard.1 > 1 && common.json {
+        let part = format!("{}/{}", shard.0 + 1, shard.1);
+        return terminal::print_json(&json!({ "part": part, "flights": flights }));
+    }
     if shard.1 > 1 {
         say(
             common,
@@ -81,7 +83,7 @@ pub fn sweep(args: &Sweep, common: &Common) -> Result<(), Failure> {
     if logs.is_empty() {
         return Ok(());
     }
-    refly(&campaign, &args.out, &parts()?, flights, &logs).map_err(broken)
+    refly(&campaign, &args.out, &parts()?, flights, &logs)
 }
 
 /// Joins the parts of a campaign.
@@ -112,13 +114,17 @@ pub fn merge(args: &Merge, common: &Common) -> Result<(), Failure> {
     let advice = "give the folders of all parts; `sweep --resume` finishes one that was stopped";
     files::complete(&campaign, &parts).map_err(|error| input(error.to_string(), advice))?;
     let broken = |error: io::Error| Failure::out(&args.out, &error);
-    let held = files::holds(&args.out, &campaign).map_err(broken)?;
-    // The parts may be joined again, and in the folder of one of them.
-    allowed(&held, held == Held::This, &args.out)?;
-    claim(&args.out, &campaign).map_err(broken)?;
+    let may = || {
+        let held = files::holds(&args.out, &campaign).map_err(broken)?;
+        // The parts may be joined again, and in the folder of one of them.
+        allowed(&held, held == Held::This, &args.out)?;
+        claim(&args.out, &campaign).map_err(broken).map(|()| held)
+    };
+    may()?;
     fs::create_dir_all(&args.out).map_err(broken)?;
     let _lock = lock(&args.out)?;
-    if held == Held::Nothing {
+    // Somebody may have been faster.
+    if may()? == Held::Nothing {
         files::begin(&Native, &args.out, &campaign).map_err(broken)?;
     }
     conclude(&campaign, &args.plan, &args.out, parts, campaign.flights(), common)
@@ -181,12 +187,13 @@ fn cores() -> usize {
 fn announce(drive: &Drive<'_>, args: &Sweep, common: &Common) -> Result<(), Failure> {
     let Drive { campaign, threads, .. } = *drive;
     let flights = drive.flights();
-    let estimate = estimate(campaign, flights, threads)?;
-    let ticks = campaign.scenario.ticks();
-    let time = duration(estimate);
-    if estimate > LONGEST {
+    let left = if args.resume { drive.left() } else { flights };
+    let Estimate { time, ticks } = estimate(campaign, left, threads)?;
+    let long = time > LONGEST;
+    let (ticks, time) = (span(ticks), duration(time));
+    if long {
         let message =
-            format!("{flights} flights of {ticks} ticks would take {time} on {threads} threads");
+            format!("{left} flights of {ticks} ticks would take {time} on {threads} threads");
         return Err(input(
             message,
             "fly fewer or shorter flights, or parts of the plan with --shard",
@@ -203,13 +210,15 @@ fn announce(drive: &Drive<'_>, args: &Sweep, common: &Common) -> Result<(), Fail
         );
         return Err(input(message, "give an --out on another disk, or fly fewer flights"));
     }
-    say(
-        common,
-        &format!(
-            "{flights} flights of {ticks} ticks on {threads} threads: about {time}, {size:.1} MB on disk"
-        ),
-    );
+    let rest = if left < flights { format!(", {left} left") } else { String::new() };
+    say(common, &format!("{flights} flights of {ticks} ticks{rest}, on {threads} threads:"));
+    say(common, &format!("about {time} if no flight fails, {size:.1} MB on disk"));
     Ok(())
+}
+
+/// `50`, or `50 to 1000`.
+fn span((low, high): (u64, u64)) -> String {
+    if low == high { low.to_string() } else { format!("{low} to {high}") }
 }
 
 /// Bytes that are free where the folder is or will be; `None` where the system does not say.
@@ -233,6 +242,16 @@ fn say(common: &Common, text: &str) {
     if !common.quiet && !common.json {
         terminal::say(text);
     }
+}
+
+/// What the folder holds, where it may be used.
+fn ask(drive: &Drive<'_>, args: &Sweep) -> Result<Held, Failure> {
+    let broken = |error: io::Error| Failure::out(&args.out, &error);
+    let held = files::holds(&args.out, drive.campaign).map_err(broken)?;
+    if matches!(held, Held::Nothing | Held::This) {
+        drive.claim().map_err(broken)?;
+    }
+    allowed(&held, args.resume, &args.out).map(|()| held)
 }
 
 /// Whether the folder may be used.
@@ -266,7 +285,8 @@ fn of_version(folder: &Path, version: &str) -> Failure {
 fn lock(folder: &Path) -> Result<File, Failure> {
     let path: PathBuf = folder.join(".lock");
     let broken = |error: io::Error| Failure::out(&path, &error);
-    let file = File::create(&path).map_err(broken)?;
+    // Not cut to nothing: it may be a link.
+    let file = File::options().create(true).append(true).open(&path).map_err(broken)?;
     match file.try_lock() {
         Ok(()) => Ok(file),
         Err(TryLockError::WouldBlock) => Err(input(
@@ -289,9 +309,12 @@ fn check(drive: &Drive<'_>, common: &Common) -> Result<(), Faults> {
 /// What to do with a campaign of which a flight could not be built, when others were flown already.
 fn unflown(failure: Failure) -> Failure {
     let Failure::Faults(Faults(mut faults)) = failure else { return failure };
-    let message = "the campaign ends here: flights before it may have been flown";
-    let help = "mend the file so that every draw makes a flight, and begin anew in another --out";
-    faults.push(Fault::general(message).help(help));
+    if let Some(last) = faults.last_mut() {
+        let help =
+            "mend the file so that every draw makes a flight, and begin anew in another --out";
+        last.help =
+            Some(last.help.take().map_or_else(|| help.into(), |known| format!("{known}; {help}")));
+    }
     Failure::Faults(Faults(faults))
 }
 

@@ -216,6 +216,41 @@ fn flights_of_another_campaign_or_version_are_not_mixed_in() {
     assert!(bench.results("one") == whole, "nothing was touched");
 }
 
+/// A setting that is read as another quantity, or not at all, would make a campaign about something else.
+#[test]
+fn settings_that_would_be_lost_are_refused() {
+    let bench = Bench::new();
+    assert!(bench.run("drawn", &SHORT).status.success());
+    let plan = fs::read_to_string(bench.path("drawn/plan.csv")).expect("a plan");
+    let row = plan.lines().nth(9).expect("ten lines");
+    fs::write(bench.path("spaced.csv"), plan.replace(row, &row.replacen(',', ", ", 2)))
+        .expect("written");
+    let deep = format!("sweep=[{{ path = \"vehicle{}\", uniform = [1, 2] }}]", ".a".repeat(20_000));
+    let cases: [(&[&str], &str); 9] = [
+        (&["--plan", "spaced.csv"], "spaced.csv: line 10: seed ` "),
+        (&["--set", "sweep.0.path=campaign.flights"], "it changes no flight"),
+        (&["--set", "sweep.0.path=run.log_every"], "it changes no flight"),
+        (&["--set", "sweep.0.path=vehicle..mass"], "`vehicle..mass` is not a dotted path"),
+        (&["--set", &deep], "20001 parts"),
+        (&["--set", "sweep.1.path=vehicle.mass"], "`vehicle.mass` is swept twice"),
+        (
+            &["--set", "sweep.0.path=[\"vehicle.inertia.x\", \"vehicle.inertia.0\"]"],
+            "`vehicle.inertia.0` is swept twice",
+        ),
+        (
+            &["--set", "sweep.0.path=timing.jitter", "--set", "sweep.0.relative=true"],
+            "no factor changes it",
+        ),
+        (&["--set", "vehicle.mass=0.6\nvehicle.motor_lag=0.1"], "one setting at a time"),
+    ];
+    for (more, expected) in cases {
+        let output = bench.run("refused", &[&SHORT[..], more].concat());
+        assert_eq!(output.status.code(), Some(2), "{expected}: {}", message(&output));
+        assert!(message(&output).contains(expected), "{expected}: {}", message(&output));
+        assert!(!bench.path("refused").exists());
+    }
+}
+
 /// The journal says for itself whose it is, also where nothing else is left.
 #[test]
 fn a_journal_alone_is_gone_on_with_by_its_own_campaign_only() {
@@ -229,7 +264,7 @@ fn a_journal_alone_is_gone_on_with_by_its_own_campaign_only() {
     fs::write(&about, "").expect("written");
     let (code, message) = run("one", &["--resume"]);
     assert!(code == Some(2) && message.contains("campaign.json: EOF"), "{message}");
-    assert!(message.contains("remove it and give the command without --resume"), "{message}");
+    assert!(message.contains("remove it and give the same command, without --resume"), "{message}");
     fs::remove_file(&about).expect("removed");
     for (more, wanted) in [
         (["--set", "run.seed=9"], "journal.bin: belongs to another campaign"),
@@ -244,7 +279,7 @@ fn a_journal_alone_is_gone_on_with_by_its_own_campaign_only() {
     assert_eq!(run("part", &["--shard", "1/2"]).0, Some(0));
     for more in [&["--shard", "2/2"][..], &["--shard", "2/2", "--resume"], &["--resume"]] {
         let (code, message) = run("part", more);
-        assert!(code == Some(2) && message.contains("give --shard 1/2 to go on"), "{message}");
+        assert!(code == Some(2) && message.contains("--shard 1/2 to go on"), "{message}");
     }
 }
 

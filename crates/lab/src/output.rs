@@ -13,7 +13,7 @@ use crate::sensitivity::Spread;
 
 pub use folder::{Folder, Halt, halt};
 pub use refused::{Refused, advise};
-pub(crate) use refused::{refuse, with_help};
+pub(crate) use refused::{is_refused, refuse, with_help};
 
 /// Version of the program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use stormpetrel_lab::campaign::disk::{Disk, Native, Scratch, Sink};
 use stormpetrel_lab::campaign::drive::{Drive, End, JOURNAL};
 use stormpetrel_lab::campaign::files;
-use stormpetrel_lab::campaign::journal::{self, CHUNK, Index};
+use stormpetrel_lab::campaign::journal::{self, CHUNK, Entry, Index, Journal, Owner, Record};
 use stormpetrel_lab::campaign::plan::Campaign;
 use stormpetrel_lab::scenario::fault::Faults;
 use tempfile::TempDir;
@@ -216,7 +216,8 @@ fn zeros_behind_the_last_record_are_cut_off() {
     let campaign = place.campaign(&[]);
     let whole = finish(&campaign, &place.sub("whole"), 1);
     let journal = fs::read(place.sub("whole").join(JOURNAL)).expect("a journal");
-    let two_chunks = journal::size(2 * CHUNK, campaign.columns().metrics.len() as u64);
+    let metrics = campaign.columns().metrics.len() as u64;
+    let two_chunks = journal::size(2 * CHUNK, metrics);
     let path = place.sub("cut").join(JOURNAL);
     let index = |bytes: &[u8]| {
         fs::write(&path, bytes).expect("written");
@@ -230,6 +231,43 @@ fn zeros_behind_the_last_record_are_cut_off() {
         assert!(whole == finish(&campaign, &place.sub("cut"), 2), "{zeros} zeros");
         *bytes.last_mut().expect("a zero") = 1;
         assert!(index(&bytes).is_err(), "not only zeros");
+    }
+    // The third record has its head and some flights, and room for the rest.
+    for more in [0, 4096] {
+        let mut bytes = journal[..usize::try_from(two_chunks).expect("small") + 1000].to_vec();
+        bytes.resize(usize::try_from(journal::size(3 * CHUNK, metrics)).expect("small") + more, 0);
+        let read = index(&bytes).expect("zeros are nothing").expect("a journal");
+        assert_eq!(read.tallies().count(), 2);
+        assert!(whole == finish(&campaign, &place.sub("cut"), 2), "{more} more");
+    }
+    for zeros in [1, 30, 52, 5000] {
+        assert!(index(&vec![0; zeros]).expect("zeros are nothing").is_none());
+    }
+    assert!(index(b"mine").is_err() && index(&[b'm'; 60]).is_err());
+}
+
+/// With checksums that are right, as nobody but a forger writes them.
+#[test]
+fn a_forged_journal_is_refused() {
+    let place = Place::new();
+    let campaign = place.campaign(&[]);
+    let folder = place.sub("one");
+    let path = folder.join(JOURNAL);
+    let stop = AtomicBool::new(false);
+    let drive = drive(&campaign, &folder, &stop);
+    for metrics in [1 << 61, u64::MAX] {
+        let owner = Owner { metrics, ..drive.owner() };
+        Journal::open(&Native, &path, &owner, None).expect("written");
+        assert!(Index::read(&path).is_err(), "{metrics} metrics");
+    }
+    let metrics = campaign.columns().metrics.len();
+    for (chunk, flights) in [(0, 63), (99, 64)] {
+        let entry = Entry { failure: None, metrics: vec![0.0; metrics] };
+        let record = Record::new(chunk, metrics, vec![entry; flights].into_iter()).expect("small");
+        let mut journal = Journal::open(&Native, &path, &drive.owner(), None).expect("written");
+        journal.append(&record).expect("written");
+        let error = drive.fly(&mut |_| {}).expect_err("no such chunk").to_string();
+        assert!(error.contains(&format!("its chunk {chunk} is none of this part")), "{error}");
     }
 }
 

@@ -3,15 +3,17 @@
 use std::collections::BTreeSet;
 use std::io;
 use std::path::Path;
+use std::sync::atomic::Ordering;
 
 use indicatif::ProgressBar;
 use stormpetrel_lab::campaign::files;
 use stormpetrel_lab::campaign::journal::Index;
 use stormpetrel_lab::campaign::plan::Campaign;
 use stormpetrel_lab::campaign::summary::Summary;
+use stormpetrel_lab::output::Folder;
 
 use super::input;
-use crate::Failure;
+use crate::{Failure, terminal};
 
 /// Flights that are flown again with a log.
 pub(super) enum Which {
@@ -49,14 +51,19 @@ pub(super) fn refly(
     parts: &[Index],
     flights: u64,
     logs: &[Which],
-) -> io::Result<()> {
-    for index in chosen(campaign, parts, flights, logs)? {
-        let scenario = campaign
-            .flight(&campaign.inputs(index), campaign.seed(index))
-            .map_err(|faults| io::Error::other(faults.to_string()))?;
-        let folder = stormpetrel_lab::output::Folder::new(&out.join(format!("flights/{index}")))?;
-        crate::run::fly_into(&folder, "", scenario, &ProgressBar::hidden())?;
-        folder.publish()?;
+) -> Result<(), Failure> {
+    let broken = |error: io::Error| Failure::out(out, &error);
+    for index in chosen(campaign, parts, flights, logs).map_err(broken)? {
+        if terminal::STOP.load(Ordering::Relaxed) {
+            terminal::warn(
+                "stopped before all logs were written: the same command with --resume writes them",
+            );
+            return Err(Failure::Interrupted);
+        }
+        let scenario = campaign.flight(&campaign.inputs(index), campaign.seed(index))?;
+        let folder = Folder::new(&out.join(format!("flights/{index}"))).map_err(broken)?;
+        crate::run::fly_into(&folder, "", scenario, &ProgressBar::hidden()).map_err(broken)?;
+        folder.publish().map_err(broken)?;
     }
     Ok(())
 }

@@ -59,70 +59,98 @@ impl Drive<'_> {
     }
 }
 
-/// Wall time of a campaign on so many threads, reckoned from its first chunk: all threads fly it at once, as
-/// they will share the machine then.
+/// What a campaign will take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Wall time.
+    pub time: Duration,
+    /// Ticks of the shortest and of the longest flight, of those that were looked at.
+    pub ticks: (u64, u64),
+}
+
+/// What so many flights will take on so many threads, reckoned from a chunk of flights from all over the plan:
+/// all threads fly it at once, as they will share the machine then. A flight that fails late ends sooner.
 ///
 /// # Errors
 /// Where one of these flights cannot be built.
-pub fn estimate(campaign: &Campaign, flights: u64, threads: usize) -> Result<Duration, Faults> {
+pub fn estimate(campaign: &Campaign, flights: u64, threads: usize) -> Result<Estimate, Faults> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     // More threads than cores take turns.
     let threads = threads.clamp(1, cores);
-    let times = std::thread::scope(|scope| {
+    let paces = std::thread::scope(|scope| {
         let threads =
-            start(scope, threads, || time_of_chunk(campaign)).map_err(|error| no_thread(&error))?;
+            start(scope, threads, || pace(campaign)).map_err(|error| no_thread(&error))?;
         // A flight that breaks the program is told when its turn comes.
         threads.into_iter().filter_map(|thread| thread.join().ok()).collect::<Result<Vec<_>, _>>()
     })?;
-    let slowest = times.into_iter().fold(0.0, Real::max);
+    let slowest = paces.iter().map(|pace| pace.0).fold(0.0, Real::max);
     // A thread takes whole chunks, and lanes take their time full or not.
     let chunks = flights.div_ceil(CHUNK).div_ceil(threads as u64);
     let lanes = (if flights < CHUNK { flights } else { CHUNK }).next_multiple_of(LANES as u64);
     let whole = slowest * chunks as f64 * (lanes as f64 / CHUNK as f64);
     // Ten thousand years are enough to say no.
-    Ok(Duration::from_secs_f64(if whole < 3e11 { whole } else { 3e11 }))
+    let time = Duration::from_secs_f64(if whole < 3e11 { whole } else { 3e11 });
+    Ok(Estimate { time, ticks: paces.first().map_or((0, 0), |pace| pace.1) })
 }
 
 fn no_thread(error: &io::Error) -> Faults {
     Fault::general(format!("no thread could be started: {error}")).into()
 }
 
-/// Time for the first chunk (s). It is flown for a few milliseconds, at most 500 ticks: what they take beyond
-/// the first grows with their number.
-fn time_of_chunk(campaign: &Campaign) -> Result<f64, Faults> {
+/// Time for a chunk (s), and the ticks of its shortest and its longest flight.
+type Pace = (f64, (u64, u64));
+
+/// Flies a chunk for a few milliseconds, at most 500 ticks: the last of these tell how time grows with ticks.
+fn pace(campaign: &Campaign) -> Result<Pace, Faults> {
     const ENOUGH: f64 = 5e-3;
-    let ticks = campaign.scenario.ticks() as f64;
     let mut worker = Worker::new(campaign);
-    // What the first times wait for, such as memory, a campaign does not wait for again.
-    let mut faster_of_two = |ticks: f64| -> Result<f64, Faults> {
-        let mut fastest = f64::INFINITY;
-        for _ in 0..2 {
-            let begin = Instant::now();
-            fly_cut(campaign, ticks, &mut worker)?;
-            fastest = Real::min(fastest, begin.elapsed().as_secs_f64());
-        }
-        Ok(fastest)
+    // What the first time waits for, such as memory, a campaign does not wait for again.
+    let mut faster_of_two = |most: u64| -> Result<(f64, Cut), Faults> {
+        let (first, _) = fly_cut(campaign, most, &mut worker)?;
+        let (second, cut) = fly_cut(campaign, most, &mut worker)?;
+        Ok((Real::min(first, second), cut))
     };
-    let one = faster_of_two(1.0)?;
-    let (mut flown, mut all) = (1.0, one);
-    while all < one + ENOUGH && flown < Real::min(ticks, 500.0) {
-        flown = Real::min(8.0 * flown, Real::min(ticks, 500.0));
-        all = faster_of_two(flown)?;
+    let (one, mut cut) = faster_of_two(1)?;
+    let (mut time, mut slope) = (one, 0.0);
+    for most in [8, 64, 500] {
+        if time > one + ENOUGH || cut.flown == cut.whole {
+            break;
+        }
+        let (longer, next) = faster_of_two(most)?;
+        slope = Real::max(0.0, (longer - time) / (next.flown - cut.flown) as f64);
+        (time, cut) = (longer, next);
     }
-    Ok(if flown > 1.0 { one + (all - one) * (ticks - 1.0) / (flown - 1.0) } else { one })
+    Ok((time + slope * (cut.whole - cut.flown) as f64, cut.ticks))
 }
 
-/// Builds and flies the first chunk to so many ticks.
-fn fly_cut(campaign: &Campaign, ticks: f64, worker: &mut Worker<'_>) -> Result<(), Faults> {
-    // The first ones again where there are fewer: a chunk is full but for the last.
-    let indices = (0..campaign.flights()).cycle().zip(0..CHUNK);
-    let flights = indices.map(|(index, _)| {
-        let mut flight = built(campaign, index)?;
-        flight.run.duration = Real::min(flight.run.duration, ticks * flight.run.control_step);
+/// Ticks of flights that were cut short.
+struct Cut {
+    /// Ticks to which they were cut, of all together.
+    flown: u64,
+    /// Ticks that they have, of all together.
+    whole: u64,
+    /// Ticks of the shortest and of the longest.
+    ticks: (u64, u64),
+}
+
+/// Builds flights from all over the plan, flies them for at most so many ticks, and makes a record of them;
+/// time in s.
+fn fly_cut(campaign: &Campaign, most: u64, worker: &mut Worker<'_>) -> Result<(f64, Cut), Faults> {
+    let begin = Instant::now();
+    let mut cut = Cut { flown: 0, whole: 0, ticks: (u64::MAX, 0) };
+    let flights = (0..CHUNK).map(|at| {
+        // Some come twice where there are fewer: a chunk is full but for the last.
+        let mut flight = built(campaign, at * campaign.flights() / CHUNK)?;
+        let ticks = flight.ticks();
+        let flown = ticks.min(most);
+        cut.flown += flown;
+        cut.whole += ticks;
+        cut.ticks = (cut.ticks.0.min(ticks), cut.ticks.1.max(ticks));
+        flight.run.duration = flown as f64 * flight.run.control_step;
         Ok(flight)
     });
     let entries = worker.fly(flights)?;
-    // A record of what is flown is part of the work.
-    let _ = Record::new(0, campaign.columns().metrics.len(), entries);
-    Ok(())
+    let record = Record::new(0, campaign.columns().metrics.len(), entries);
+    drop(std::hint::black_box(record));
+    Ok((begin.elapsed().as_secs_f64(), cut))
 }

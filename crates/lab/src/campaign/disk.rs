@@ -4,7 +4,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, Write};
 use std::path::Path;
 
-use crate::output::advise;
+use crate::output::{is_refused, with_help};
 
 /// What a campaign asks of the file system.
 pub trait Disk: Sync {
@@ -80,24 +80,44 @@ impl Sink for File {
     }
 }
 
+/// Opens a file that may be read to its end: a pipe would never come to one.
+///
+/// # Errors
+/// Those of the system, and what is no file.
+pub(super) fn own_file(path: &Path) -> io::Result<File> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "is not a file"));
+    }
+    File::open(path)
+}
+
 /// Writes a file beside its place and renames it: it is never seen half-written. What could not be written
 /// to its end is removed, so that it takes no room on a full disk.
 ///
 /// # Errors
-/// Those of the system, and what `fill` returns.
+/// Those of the system with `help`, and what `fill` refuses.
 pub fn replace(
     disk: &dyn Disk,
     path: &Path,
+    help: &str,
     fill: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> io::Result<()> {
     let mut beside = path.as_os_str().to_owned();
     beside.push(".part");
     let beside = Path::new(&beside);
-    let mut file = disk.create(beside).map_err(|error| advise(beside, &error))?;
+    // What is no error of the system tells for itself what it is about.
+    let told = |at: &Path, error: io::Error| match error.kind() {
+        io::ErrorKind::Other => error,
+        _ if is_refused(&error) => error,
+        _ => with_help(at, &error, help),
+    };
+    // Left by a program that was killed; a link would be written through.
+    let _ = std::fs::remove_file(beside);
+    let mut file = disk.create(beside).map_err(|error| told(beside, error))?;
     let filled = fill(file.as_mut()).and_then(|()| file.flush()).and_then(|()| file.sync());
     drop(file);
-    let renamed = || disk.rename(beside, path).map_err(|error| advise(path, &error));
-    let done = filled.and_then(|()| renamed());
+    let renamed = || disk.rename(beside, path).map_err(|error| told(path, error));
+    let done = filled.map_err(|error| told(beside, error)).and_then(|()| renamed());
     if done.is_err() {
         let _ = std::fs::remove_file(beside);
     }

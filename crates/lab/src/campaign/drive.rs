@@ -13,7 +13,7 @@ use super::journal::{self, CHUNK, Index, Journal, Owner, Record, Tally};
 use super::plan::Campaign;
 use super::summary::wilson;
 use super::worker::{Worker, start};
-use crate::output::{refuse, with_help};
+use crate::output::{REVISION, VERSION, refuse, with_help};
 
 /// How a campaign is flown.
 #[derive(Clone, Copy, Debug)]
@@ -73,6 +73,12 @@ impl Drive<'_> {
         self.chunks().map(of).sum()
     }
 
+    /// Flights of this part that the journal does not have yet, to within a chunk.
+    pub fn left(&self) -> u64 {
+        let has = journal::holds(&self.folder.join(JOURNAL), self.owner().metrics);
+        self.flights().saturating_sub(has)
+    }
+
     /// What the journal of this part must say of itself.
     pub fn owner(&self) -> Owner {
         Owner {
@@ -98,16 +104,34 @@ impl Drive<'_> {
             return Ok(());
         }
         if owner.identity == ours.identity && owner.shards == 1 {
-            let help = "leave out --shard to go on with it, or give another --out";
+            let help =
+                "leave out --shard and give --resume to go on with it, or give another --out";
             return Err(refuse(path, "holds this campaign as a whole", help));
         }
         if owner.identity == ours.identity {
             let part = format!("{}/{}", owner.shard + 1, owner.shards);
             let message = format!("holds part {part} of this campaign");
-            let help = format!("give --shard {part} to go on with it, or another --out");
+            let help = format!("give --resume --shard {part} to go on with it, or another --out");
             return Err(refuse(path, &message, &help));
         }
         Err(foreign(path))
+    }
+
+    /// Refuses a journal with chunks that this part of the plan does not have.
+    fn fits(&self, path: &Path, index: &Index) -> io::Result<()> {
+        let (shard, shards) = self.shard;
+        let ours = |(chunk, tally): &(u64, Tally)| {
+            let rows = rows(self.campaign, *chunk);
+            chunk % shards == shard && rows.clone().count() as u64 == tally.flown
+        };
+        match index.tallies().find(|chunk| !ours(chunk)) {
+            None => Ok(()),
+            Some((chunk, _)) => {
+                let message = format!("its chunk {chunk} is none of this part of the plan");
+                let help = "restore it from a copy, or remove the folder and fly again";
+                Err(refuse(path, &message, help))
+            }
+        }
     }
 
     /// Flies what the journal does not have yet; `watch` is told of every chunk.
@@ -120,6 +144,7 @@ impl Drive<'_> {
         let index = Index::read(&path)?;
         if let Some(index) = &index {
             self.own(&path, index.owner())?;
+            self.fits(&path, index)?;
         }
         let mut journal = Journal::open(self.disk, &path, &self.owner(), index.as_ref())
             .map_err(|error| halted(&path, &error))?;
@@ -176,7 +201,7 @@ pub fn claim(folder: &Path, campaign: &Campaign) -> io::Result<()> {
 fn foreign(path: &Path) -> io::Error {
     let help =
         "give another --out; to resume, give the same file, --variant, --set and --plan as before";
-    refuse(path, "belongs to another campaign", help)
+    refuse(path, "belongs to another campaign, or to another version of the program", help)
 }
 
 /// The flights of a chunk.
@@ -186,9 +211,10 @@ pub fn rows(campaign: &Campaign, chunk: u64) -> std::ops::Range<u64> {
     begin..if end < campaign.flights() { end } else { campaign.flights() }
 }
 
-/// A hash of everything that the results depend on (FNV-1a).
+/// A hash of everything that the results depend on, the version of the program with it (FNV-1a).
 pub fn identity(campaign: &Campaign) -> u64 {
-    campaign.identity().to_string().bytes().fold(0xCBF2_9CE4_8422_2325, |state, byte| {
+    let all = format!("{VERSION} {REVISION} {}", campaign.identity());
+    all.bytes().fold(0xCBF2_9CE4_8422_2325, |state, byte| {
         (state ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
     })
 }
@@ -229,7 +255,8 @@ fn keep(
             enough.store(true, Ordering::Relaxed);
         }
     }
-    first_bad.map_or(Ok(()), |(_, error)| Err(error))
+    // What comes after the flights that are enough does not count.
+    first_bad.filter(|_| !count.enough()).map_or(Ok(()), |(_, error)| Err(error))
 }
 
 /// Counts what is done, and how far the plan is done without a gap: only that may decide when there is

@@ -1,20 +1,19 @@
 //! The files of a campaign, each written beside its place and renamed.
 
-use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use serde_json::{Value as Json, json};
 
-use super::disk::{Disk, Sink, replace};
-use super::drive::rows;
+use super::disk::{Disk, Sink, own_file, replace};
+use super::drive::{JOURNAL, rows};
 use super::journal::{self, CHUNK, Index, row};
 use super::parquet::{Writer, scratch_size};
 use super::plan::Campaign;
 use super::report::{Story, html};
 use super::result::{Columns, Row};
 use super::summary::Summary;
-use crate::output::{REVISION, VERSION, refuse, with_help};
+use crate::output::{REVISION, VERSION, advise, refuse, with_help};
 
 /// What the campaign is: written first, compared before it is resumed.
 pub const CAMPAIGN: &str = "campaign.json";
@@ -29,8 +28,11 @@ pub const REPORT: &str = "report.html";
 /// Worst flights that are kept for the report.
 pub const WORST: usize = 10;
 
-/// What to do with a [`CAMPAIGN`] that cannot be read: the journal says for itself whose it is.
-const ANEW: &str = "remove it and give the command without --resume: what is flown is kept";
+/// What to do where a campaign cannot begin.
+const BEGIN: &str = "mend that, or give another --out";
+/// What to do where its results cannot be written.
+const CONCLUDE: &str =
+    "what is flown is kept: mend that, and the same command goes on (`sweep` with --resume)";
 
 /// `campaign.json`.
 pub fn about(campaign: &Campaign) -> Json {
@@ -47,7 +49,7 @@ pub fn about(campaign: &Campaign) -> Json {
 /// # Errors
 /// Where they cannot be written.
 pub fn begin(disk: &dyn Disk, folder: &Path, campaign: &Campaign) -> io::Result<()> {
-    replace(disk, &folder.join(PLAN), |file| {
+    replace(disk, &folder.join(PLAN), BEGIN, |file| {
         let mut out = BufWriter::with_capacity(1 << 16, Pass(file));
         let names: Vec<String> = campaign.columns().inputs.iter().map(|n| cell(n)).collect();
         writeln!(out, "index,seed,{}", names.join(","))?;
@@ -60,7 +62,7 @@ pub fn begin(disk: &dyn Disk, folder: &Path, campaign: &Campaign) -> io::Result<
     })?;
     let text = format!("{:#}\n", about(campaign));
     // Last: a folder with this file has its plan.
-    replace(disk, &folder.join(CAMPAIGN), |file| file.write_all(text.as_bytes()))
+    replace(disk, &folder.join(CAMPAIGN), BEGIN, |file| file.write_all(text.as_bytes()))
 }
 
 /// A cell of a CSV file, in quotes where it needs them.
@@ -88,16 +90,31 @@ pub enum Held {
 /// What the folder holds.
 ///
 /// # Errors
-/// Where its description cannot be read.
+/// Where its description cannot be read, or where it has results of which nothing says whose they are.
 pub fn holds(folder: &Path, campaign: &Campaign) -> io::Result<Held> {
     let path = folder.join(CAMPAIGN);
-    let text = match fs::read_to_string(&path) {
+    // The journal says for itself whose it is.
+    let flown = folder.join(JOURNAL).exists();
+    let text = match own_file(&path).and_then(io::read_to_string) {
         Ok(text) => text,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Held::Nothing),
-        Err(error) => return Err(with_help(&path, &error, ANEW)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            return if flown { Ok(Held::Nothing) } else { unclaimed(folder) };
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotADirectory => {
+            return Err(advise(folder, &error));
+        }
+        Err(error) => return Err(with_help(&path, &error, BEGIN)),
+    };
+    let help = if flown {
+        "remove it and give the same command, without --resume: what is flown is kept"
+    } else {
+        "restore it from a copy, or give another --out"
     };
     let found: Json =
-        serde_json::from_str(&text).map_err(|error| refuse(&path, &error.to_string(), ANEW))?;
+        serde_json::from_str(&text).map_err(|error| refuse(&path, &error.to_string(), help))?;
+    if !found["campaign"].is_object() {
+        return Err(refuse(&path, "does not describe a campaign", help));
+    }
     let ours = about(campaign);
     Ok(if found["campaign"] != ours["campaign"] {
         Held::Another
@@ -107,6 +124,18 @@ pub fn holds(folder: &Path, campaign: &Campaign) -> io::Result<Held> {
         let word = |key: &str| found[key].as_str().unwrap_or("?").to_owned();
         Held::OfVersion(format!("{} ({})", word("version"), word("revision")))
     })
+}
+
+/// Refuses results without a description: they would be written over.
+fn unclaimed(folder: &Path) -> io::Result<Held> {
+    for name in [RESULTS, SUMMARY, REPORT] {
+        let path = folder.join(name);
+        if path.symlink_metadata().is_ok() {
+            let message = format!("is there already, and no {CAMPAIGN} says whose it is");
+            return Err(refuse(&path, &message, "give another --out, or remove it"));
+        }
+    }
+    Ok(Held::Nothing)
 }
 
 /// Bytes that the files of so many flights take: those that stay, and the most while they are written.
@@ -175,7 +204,7 @@ pub fn finish(
     flights: u64,
 ) -> io::Result<Summary> {
     let mut summary = Summary::new(&campaign.columns(), WORST);
-    replace(disk, &folder.join(RESULTS), |file| {
+    replace(disk, &folder.join(RESULTS), CONCLUDE, |file| {
         let about = [("campaign".to_owned(), campaign.identity().to_string())];
         let scratch = disk.scratch(folder)?;
         let mut writer = Writer::new(Pass(file), scratch, &campaign.columns(), &about);
@@ -186,7 +215,7 @@ pub fn finish(
         writer.finish().map(|_| ())
     })?;
     let text = format!("{:#}\n", summary_json(campaign, &summary));
-    replace(disk, &folder.join(SUMMARY), |file| file.write_all(text.as_bytes()))?;
+    replace(disk, &folder.join(SUMMARY), CONCLUDE, |file| file.write_all(text.as_bytes()))?;
     Ok(summary)
 }
 
@@ -219,7 +248,7 @@ pub fn report(
         worst: &worst,
         command: again,
     });
-    replace(disk, &folder.join(REPORT), |file| file.write_all(page.as_bytes()))
+    replace(disk, &folder.join(REPORT), CONCLUDE, |file| file.write_all(page.as_bytes()))
 }
 
 /// `summary.json`.

@@ -145,7 +145,9 @@ impl Campaign {
     /// # Errors
     /// What is wrong with the plan, with its line.
     pub fn replay(&mut self, plan: &str) -> Result<(), String> {
-        let rows = replay::rows(plan, &self.columns().inputs)?;
+        let input = |sweep: &Sweep| (sweep.name.clone(), sweep.draw.is_named());
+        let inputs: Vec<_> = self.sweeps.iter().map(input).collect();
+        let rows = replay::rows(plan, &inputs)?;
         self.keep_tables(&rows);
         self.flights = rows.len() as u64;
         self.replayed = Some(rows);
@@ -350,17 +352,24 @@ fn targets(sweep: &Sweep, resolved: &Json, faults: &mut Vec<Fault>) -> Vec<(Stri
             Json::Array(items) => items.get(part.parse::<usize>().ok()?),
             other => other.get(part),
         });
-        match found {
-            Some(Json::Number(x)) => targets.push((path.clone(), x.as_f64().unwrap_or(1.0))),
-            Some(Json::Object(axes)) if axes.values().all(Json::is_number) => targets.extend(
-                axes.iter().map(|(axis, x)| (format!("{path}.{axis}"), x.as_f64().unwrap_or(1.0))),
-            ),
-            _ => {
-                let message = format!("`{path}` is no number that could be multiplied");
-                let help = "`stormpetrel explain` names the settings of each block";
-                faults.push(Fault::new(&sweep.place, message).help(help));
+        let number = |path: &str, x: &Json| (path.to_owned(), x.as_f64().unwrap_or(1.0));
+        let found: Vec<(String, f64)> = match found {
+            Some(x @ Json::Number(_)) => vec![number(path, x)],
+            Some(Json::Object(axes)) if axes.values().all(Json::is_number) => {
+                axes.iter().map(|(axis, x)| number(&format!("{path}.{axis}"), x)).collect()
             }
+            _ => Vec::new(),
+        };
+        if found.is_empty() {
+            let message = format!("`{path}` is no number that could be multiplied");
+            let help = "`stormpetrel explain` names the settings of each block";
+            faults.push(Fault::new(&sweep.place, message).help(help));
+        } else if found.iter().all(|(_, x)| *x == 0.0) {
+            let message = format!("`{path}` is 0: no factor changes it");
+            let help = "give it another value, or leave out `relative`";
+            faults.push(Fault::new(&sweep.place, message).help(help));
         }
+        targets.extend(found);
     }
     targets
 }

@@ -3,11 +3,11 @@
 use super::random::{key, named};
 use super::result::Input;
 
-/// Seeds and inputs of a plan in the order of `inputs`.
+/// Seeds and inputs of a plan in the order of `inputs`, each with whether it is a name and no number.
 ///
 /// # Errors
 /// What is wrong with it, with its line.
-pub fn rows(plan: &str, inputs: &[String]) -> Result<Vec<(u64, Vec<Input>)>, String> {
+pub fn rows(plan: &str, inputs: &[(String, bool)]) -> Result<Vec<(u64, Vec<Input>)>, String> {
     let mut lines = plan.lines().enumerate().map(|(i, line)| (i + 1, line));
     let head = lines.next().map_or_else(Vec::new, |(_, line)| cells(line));
     let place = |name: &str| {
@@ -16,7 +16,7 @@ pub fn rows(plan: &str, inputs: &[String]) -> Result<Vec<(u64, Vec<Input>)>, Str
             .ok_or_else(|| format!("line 1: no column `{name}`"))
     };
     let (index_at, seed_at) = (place("index")?, place("seed")?);
-    let places = inputs.iter().map(|name| place(name)).collect::<Result<Vec<_>, _>>()?;
+    let places = inputs.iter().map(|(name, _)| place(name)).collect::<Result<Vec<_>, _>>()?;
     if let Some(extra) = head
         .iter()
         .enumerate()
@@ -24,7 +24,6 @@ pub fn rows(plan: &str, inputs: &[String]) -> Result<Vec<(u64, Vec<Input>)>, Str
     {
         return Err(format!("line 1: column `{}` is no input of the scenario", extra.1));
     }
-    let named = named_columns(plan, &places);
     let mut rows = Vec::new();
     for (number, line) in lines {
         let row = cells(line);
@@ -44,26 +43,17 @@ pub fn rows(plan: &str, inputs: &[String]) -> Result<Vec<(u64, Vec<Input>)>, Str
         if seed > 9_000_000_000_000_000 {
             return Err(format!("line {number}: seed `{seed}` must be at most 9e15"));
         }
-        let input = |(at, named): (&usize, &bool)| match row[*at].parse::<f64>() {
-            Ok(x) if x.is_finite() && !named => Ok(Input::Number(x)),
-            Ok(x) if !named => Err(format!("line {number}: `{}` = {x}: must be finite", head[*at])),
-            _ => Ok(Input::Text(row[*at].clone())),
+        let input = |(at, (_, named)): (&usize, &(String, bool))| match row[*at].parse::<f64>() {
+            _ if *named => Ok(Input::Text(row[*at].clone())),
+            Ok(x) if x.is_finite() => Ok(Input::Number(x)),
+            Ok(x) => Err(format!("line {number}: `{}` = {x}: must be finite", head[*at])),
+            Err(_) => {
+                Err(format!("line {number}: `{}` = `{}`: must be a number", head[*at], row[*at]))
+            }
         };
-        rows.push((seed, places.iter().zip(&named).map(input).collect::<Result<_, _>>()?));
+        rows.push((seed, places.iter().zip(inputs).map(input).collect::<Result<_, _>>()?));
     }
     if rows.is_empty() { Err("no flights".into()) } else { Ok(rows) }
-}
-
-/// Which of the columns at these places have a cell that is no number: all their cells are names then.
-fn named_columns(plan: &str, places: &[usize]) -> Vec<bool> {
-    let mut named = vec![false; places.len()];
-    for line in plan.lines().skip(1) {
-        let row = cells(line);
-        for (named, at) in named.iter_mut().zip(places) {
-            *named |= row.get(*at).is_some_and(|cell| cell.parse::<f64>().is_err());
-        }
-    }
-    named
 }
 
 /// The cells of a line; quotes as `plan.csv` writes them.
@@ -101,12 +91,12 @@ mod tests {
 
     #[test]
     fn columns_are_found_by_name_and_quotes_taken_off() {
-        let names = ["b,c".to_owned(), "law".to_owned()];
+        let names = [("b,c".to_owned(), false), ("law".to_owned(), true)];
         let plan = "seed,law,index,\"b,c\"\n7,hosm,0,1e-3\n8,none,1,2.5\n";
         let read = rows(plan, &names).expect("a good plan");
         let row = |seed, x, law: &str| (seed, vec![Input::Number(x), Input::Text(law.into())]);
         assert_eq!(read, [row(7, 1e-3, "hosm"), row(8, 2.5, "none")]);
-        // A column with a name in it has names only.
+        // A name may look like a number.
         let plan = "index,seed,law,\"b,c\"\n0,7,0.50,1\n1,8,\"[1, 0, 0]\",2\n";
         let read = rows(plan, &names).expect("a good plan");
         assert_eq!(read, [row(7, 1.0, "0.50"), row(8, 2.0, "[1, 0, 0]")]);
@@ -114,7 +104,7 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_said_with_its_line() {
-        let names = ["m".to_owned()];
+        let names = [("m".to_owned(), false)];
         for (plan, message) in [
             ("", "line 1: no column `index`"),
             ("index,seed\n", "line 1: no column `m`"),
@@ -124,6 +114,7 @@ mod tests {
             ("index,seed,m\n1,1,1\n", "line 2: index `1` must be 0"),
             ("index,seed,m\n0,x,1\n", "line 2: seed `x` is no whole number"),
             ("index,seed,m\n0,1,inf\n", "line 2: `m` = inf: must be finite"),
+            ("index,seed,m\n0,1,2\n1,1, 2\n", "line 3: `m` = ` 2`: must be a number"),
         ] {
             assert_eq!(rows(plan, &names), Err(message.to_owned()));
         }

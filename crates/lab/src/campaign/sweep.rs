@@ -4,7 +4,7 @@ use stormpetrel_control::real::Real;
 
 use super::random::normal_quantile;
 use super::result::Input;
-use crate::scenario::document::{Entry, Node, Table, Value};
+use crate::scenario::document::{Entry, Node, Table, Value, dotted};
 use crate::scenario::fault::{Fault, Place};
 use crate::scenario::read::{unknown, wrong_type};
 
@@ -73,6 +73,11 @@ impl Draw {
             }
             _ => Input::Number(self.at(0.5)),
         }
+    }
+
+    /// Whether the values are names and no numbers.
+    pub fn is_named(&self) -> bool {
+        matches!(self, Self::List(values) if values.iter().any(|value| matches!(value, Input::Text(_))))
     }
 
     /// The value at the probability 0 < u < 1.
@@ -157,15 +162,61 @@ pub fn read(node: &Node, faults: &mut Vec<Fault>) -> Vec<Sweep> {
             continue;
         }
         let Some(sweep) = read else { continue };
-        for path in &sweep.paths {
-            if sweeps.iter().any(|other| other.name == sweep.name || other.paths.contains(path)) {
-                let message = format!("`{path}` is swept twice");
-                faults.push(Fault::new(&sweep.place, message).help("one [[sweep]] for one input"));
-            }
-        }
         sweeps.push(sweep);
     }
+    faults.extend(twice(&sweeps));
     sweeps
+}
+
+/// Two inputs of one name, and settings that two paths change: one of both would be lost.
+fn twice(sweeps: &[Sweep]) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let mut seen: Vec<(&str, Vec<String>)> = Vec::new();
+    for (at, sweep) in sweeps.iter().enumerate() {
+        let again = |what: &str| {
+            let message = format!("`{what}` is swept twice");
+            Fault::new(&sweep.place, message).help("one [[sweep]] for one input")
+        };
+        if sweeps[..at].iter().any(|other| other.name == sweep.name) {
+            faults.push(again(&sweep.name));
+            continue;
+        }
+        for path in &sweep.paths {
+            let parts = parts(path);
+            let inside =
+                |(_, other): &(&str, Vec<String>)| other.iter().zip(&parts).all(|(a, b)| a == b);
+            if seen.iter().any(inside) {
+                faults.push(again(path));
+            }
+            seen.push((path, parts));
+        }
+    }
+    faults
+}
+
+/// The parts of a path; items of a list by their number, however it is written.
+fn parts(path: &str) -> Vec<String> {
+    let part = |part: &str| match part {
+        "x" => "0".to_owned(),
+        "y" => "1".to_owned(),
+        "z" => "2".to_owned(),
+        _ => part.parse::<u64>().map_or_else(|_| part.to_owned(), |number| number.to_string()),
+    };
+    path.split('.').map(part).collect()
+}
+
+/// Refuses paths that are none, and those that change no flight.
+fn check_path(path: &str, place: &Place) -> Option<Fault> {
+    const OTHERS: [&str; 6] = ["campaign", "sweep", "title", "about", "expect", "variant"];
+    if let Err(message) = dotted(path) {
+        return Some(Fault::new(place, message).help("write it as path = \"vehicle.mass\""));
+    }
+    let first = path.split('.').next().unwrap_or_default();
+    if OTHERS.contains(&first) || path == "run.log_every" {
+        let fault = Fault::new(place, format!("`{path}` cannot be swept: it changes no flight"));
+        return Some(fault.help("sweep a setting of run, vehicle, laws or world"));
+    }
+    None
 }
 
 fn read_one(table: &Table, place: &Place, faults: &mut Vec<Fault>) -> Option<Sweep> {
@@ -209,6 +260,7 @@ fn read_one(table: &Table, place: &Place, faults: &mut Vec<Fault>) -> Option<Swe
     if paths.is_empty() {
         faults.push(Fault::new(place, "a sweep has no path").help("add path = \"vehicle.mass\""));
     }
+    faults.extend(paths.iter().filter_map(|path| check_path(path, place)));
     if paths.iter().any(|path| path == "run.seed") {
         let help = "every flight has a seed of its own, which follows from that of the file";
         faults.push(Fault::new(place, "`run.seed` cannot be swept").help(help));
@@ -219,7 +271,7 @@ fn read_one(table: &Table, place: &Place, faults: &mut Vec<Fault>) -> Option<Swe
         faults.push(Fault::new(place, message).help(help));
     }
     let draw = draws.pop()?;
-    if relative && draw.extremes().iter().any(|value| matches!(value, Input::Text(_))) {
+    if relative && draw.is_named() {
         faults.push(Fault::new(place, "`sweep.relative`: a name cannot be multiplied"));
     }
     let name = name.or_else(|| paths.first().cloned())?;
@@ -295,6 +347,10 @@ fn list(items: &[Node], place: &Place, faults: &mut Vec<Fault>) -> Option<Draw> 
             Value::Number(x, _) if x.is_finite() => values.push(Input::Number(*x)),
             Value::Text(text) => values.push(Input::Text(text.clone())),
             Value::Flag(flag) => values.push(Input::Text(flag.to_string())),
+            Value::Number(x, _) => {
+                let message = format!("`sweep.list` holds {x}: must be finite");
+                faults.push(Fault::new(&item.place, message));
+            }
             other => faults.push(wrong_type(&item.place, "sweep.list", other, "1")),
         }
     }
@@ -303,9 +359,8 @@ fn list(items: &[Node], place: &Place, faults: &mut Vec<Fault>) -> Option<Draw> 
         faults.push(Fault::new(place, "`sweep.list` mixes numbers and names"));
         return None;
     }
-    if values.is_empty() {
+    if items.is_empty() {
         faults.push(Fault::new(place, "`sweep.list` is empty").help(shape("list")));
-        return None;
     }
-    Some(Draw::List(values))
+    (!values.is_empty()).then_some(Draw::List(values))
 }

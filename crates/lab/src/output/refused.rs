@@ -31,6 +31,11 @@ fn refuse_as(kind: ErrorKind, path: &Path, message: &str, help: &str) -> io::Err
     io::Error::new(kind, Refused { path, message, help })
 }
 
+/// Whether the error has its path and what to do.
+pub(crate) fn is_refused(error: &io::Error) -> bool {
+    error.get_ref().is_some_and(<dyn std::error::Error + Send + Sync>::is::<Refused>)
+}
+
 /// What the system said of a path, with what to do about it.
 pub(crate) fn with_help(path: &Path, error: &io::Error, help: &str) -> io::Error {
     refuse_as(error.kind(), path, &error.to_string(), help)

@@ -229,7 +229,7 @@ pub fn parse_set(argument: &str) -> Result<Table, Faults> {
         return Err(Fault::general(format!("--set {argument}: no `=`")).help(EXAMPLE).into());
     };
     let (path, value) = (path.trim(), value.trim());
-    dotted(path, argument)?;
+    dotted(path).map_err(|message| bad_path(argument, &message))?;
     let tree = parse("--set", format!("{path} = {value}"));
     // A list, a table or a number that begins well and ends badly is no text.
     let begun = value.starts_with(['[', '{', '"', '\'', '+', '-', '.'])
@@ -242,7 +242,7 @@ pub fn parse_set(argument: &str) -> Result<Table, Faults> {
         }
         Ok(tree) => tree,
     };
-    if table.0.len() != 1 {
+    if !is_one(&table, path) {
         let end = source.text.len();
         let place = Place { source, span: 0..end };
         return Err(Fault::new(&place, "--set changes one setting at a time").help(EXAMPLE).into());
@@ -257,7 +257,7 @@ pub fn parse_set(argument: &str) -> Result<Table, Faults> {
 /// As [`parse_set`].
 pub fn set_number(path: &str, x: f64, whole: bool) -> Result<Table, Faults> {
     let text = format!("{path} = {x:?}");
-    dotted(path, &text)?;
+    dotted(path).map_err(|message| bad_path(&text, &message))?;
     let end = text.len();
     let source = Arc::new(Source { name: "--set".into(), text });
     let here = place(&source, 0..path.len());
@@ -272,19 +272,42 @@ pub fn set_number(path: &str, x: f64, whole: bool) -> Result<Table, Faults> {
     not_to_set(&table).map(|()| table)
 }
 
+/// Whether there is one entry at each part of the path.
+fn is_one(table: &Table, path: &str) -> bool {
+    let mut table = Some(table);
+    path.split('.').all(|_| {
+        let Some([entry]) = table.map(|table| table.0.as_slice()) else { return false };
+        table = match &entry.node.value {
+            Value::Table(inner) => Some(inner),
+            _ => None,
+        };
+        true
+    })
+}
+
 /// How a `--set` argument is written.
 const EXAMPLE: &str = "write it as --set position.kp=6.0";
 
-/// Refuses an argument whose path is none.
-fn dotted(path: &str, argument: &str) -> Result<(), Faults> {
+/// Most parts of a dotted path.
+const DEEPEST: usize = 32;
+
+/// Refuses a path that is none.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn dotted(path: &str) -> Result<(), String> {
     let plain = |part: &str| {
         !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
     };
-    if path.split('.').all(plain) {
-        return Ok(());
+    match path.split('.').count() {
+        _ if !path.split('.').all(plain) => Err(format!("`{path}` is not a dotted path")),
+        parts if parts > DEEPEST => Err(format!("a path of {parts} parts: at most {DEEPEST}")),
+        _ => Ok(()),
     }
-    let message = format!("--set {argument}: `{path}` is not a dotted path");
-    Err(Fault::general(message).help(EXAMPLE).into())
+}
+
+fn bad_path(argument: &str, message: &str) -> Faults {
+    Fault::general(format!("--set {argument}: {message}")).help(EXAMPLE).into()
 }
 
 /// Refuses settings that say which flights there are: they cannot be changed from outside.

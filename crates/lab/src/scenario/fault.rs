@@ -24,6 +24,13 @@ pub struct Place {
     pub span: Range<usize>,
 }
 
+impl Place {
+    /// Whether both are the same letters of the same text.
+    pub fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.source, &other.source) && self.span == other.span
+    }
+}
+
 /// One thing that is wrong.
 #[derive(Clone, Debug)]
 pub struct Fault {

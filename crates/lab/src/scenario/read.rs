@@ -117,9 +117,8 @@ impl VisitorMut<f64> for Reader<'_> {
                     refuse(&self.written(path), *x, *whole, meta.unit, meta.range);
                 let fault = Fault { help, ..Fault::new(&node.place, message) };
                 // One number for three axes is one mistake.
-                if self.faults.last().and_then(|f| f.place.as_ref()).map(|p| &p.span)
-                    != Some(&node.place.span)
-                {
+                let last = self.faults.last().and_then(|fault| fault.place.as_ref());
+                if last.is_none_or(|last| !last.is(&node.place)) {
                     self.faults.push(fault);
                 }
             }

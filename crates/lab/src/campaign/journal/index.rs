@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use super::{
     CHUNK, Entry, HEAD, HEADER, MARK, Owner, Tally, decode, flight_size, size, u32_at, u64_at,
 };
-use crate::output::{advise, refuse, with_help};
+use crate::campaign::disk::own_file;
+use crate::output::{advise, is_refused, refuse, with_help};
 
 /// Where the chunks of a journal stand.
 #[derive(Debug)]
@@ -43,6 +44,12 @@ fn only_zeros(file: &mut impl Read) -> io::Result<bool> {
     }
 }
 
+/// Whether a payload has the checksum that it ends with.
+fn is_whole(payload: &[u8]) -> bool {
+    let size = payload.len() - 4;
+    crc32fast::hash(&payload[..size]) == u32_at(payload, size)
+}
+
 /// A message about a journal that cannot be used.
 fn damaged(path: &Path, at: u64, what: &str) -> io::Error {
     let message = format!("damaged at byte {at}: {what}; what it holds cannot be trusted");
@@ -59,7 +66,7 @@ pub fn owner(path: &Path) -> io::Result<Option<Owner>> {
 
 /// Opens the journal at `path` behind its header; empty where nothing is in it.
 fn open(path: &Path) -> io::Result<Option<(File, Owner)>> {
-    let mut file = match File::open(path) {
+    let mut file = match own_file(path) {
         Ok(file) => file,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(unread(path, &error)),
@@ -67,12 +74,15 @@ fn open(path: &Path) -> io::Result<Option<(File, Owner)>> {
     let mut header = Vec::new();
     let read = Read::by_ref(&mut file).take(HEADER as u64).read_to_end(&mut header);
     read.map_err(|error| unread(path, &error))?;
-    let Ok(header) = <[u8; HEADER]>::try_from(header.as_slice()) else {
-        // Died while beginning: a prefix of a header is nothing flown, other bytes are not ours.
-        let ours = header.iter().zip(MARK).all(|(a, b)| *a == b);
-        return if ours { Ok(None) } else { Err(damaged(path, 0, "not a journal")) };
-    };
-    match Owner::read(&header) {
+    // Died while beginning: a prefix of a header, or room that was never filled, is nothing flown.
+    let short = header.len() < HEADER && header.iter().zip(MARK).all(|(a, b)| *a == b);
+    if short || header.iter().all(|byte| *byte == 0) && only_zeros(&mut file)? {
+        return Ok(None);
+    }
+    if !header.starts_with(&MARK) {
+        return Err(refuse(path, "is not a journal of ours", "give another --out"));
+    }
+    match <[u8; HEADER]>::try_from(header.as_slice()).ok().and_then(|bytes| Owner::read(&bytes)) {
         Some(owner) => Ok(Some((file, owner))),
         None => Err(damaged(path, 0, "the header does not have its checksum")),
     }
@@ -80,7 +90,7 @@ fn open(path: &Path) -> io::Result<Option<(File, Owner)>> {
 
 /// A journal that the system does not let us read; errors that say what to do stay.
 fn unread(path: &Path, error: &io::Error) -> io::Error {
-    if error.get_ref().is_some() {
+    if is_refused(error) {
         return advise(path, error);
     }
     with_help(path, error, "it must be a file that can be read: mend that, or give another --out")
@@ -96,7 +106,7 @@ impl Index {
         let length = file.metadata()?.len();
         let mut file = BufReader::with_capacity(1 << 16, file);
         // In one piece: growing would leave copies behind.
-        let record = size(CHUNK, owner.metrics.min(1 << 20)) - HEADER as u64;
+        let record = size(CHUNK, owner.metrics) - HEADER as u64;
         let records = Vec::with_capacity(usize::try_from(length / record + 1).unwrap_or(0));
         let path = path.to_owned();
         let mut index = Self { path, owner, records, end: HEADER as u64 };
@@ -131,7 +141,16 @@ impl Index {
             return Err(damaged(&self.path, at, "a record that no campaign writes"));
         };
         let mut record = Place { begin, chunk, flights, good: 0 };
-        let entries = self.flights(&record, file)?;
+        let payload = self.payload(&record, file)?;
+        let [.., a, b, c, d] = payload[..] else { return Ok(false) };
+        if !is_whole(&payload) {
+            // Its end was never filled.
+            if [a, b, c, d] == [0; 4] && only_zeros(file)? {
+                return Ok(false);
+            }
+            return Err(self.changed(&record));
+        }
+        let entries = self.decode(&payload);
         record.good = entries.iter().map(|entry| u16::from(entry.failure.is_none())).sum();
         self.records.push(record);
         self.end = begin + u64::from(size) + 4;
@@ -150,15 +169,20 @@ impl Index {
         }
     }
 
-    /// The flights of a record, at which `file` stands.
-    fn flights(&self, record: &Place, file: &mut impl Read) -> io::Result<Vec<Entry>> {
+    /// The flights of a record and their checksum; `file` stands at the first.
+    fn payload(&self, record: &Place, file: &mut impl Read) -> io::Result<Vec<u8>> {
         let size = usize::from(record.flights) * flight_size(self.metrics());
         let mut payload = vec![0; size + 4];
         file.read_exact(&mut payload)?;
-        if crc32fast::hash(&payload[..size]) != u32_at(&payload, size) {
-            return Err(damaged(&self.path, record.begin, "flights do not have their checksum"));
-        }
-        Ok(decode(&payload[..size], self.metrics()))
+        Ok(payload)
+    }
+
+    fn decode(&self, payload: &[u8]) -> Vec<Entry> {
+        decode(&payload[..payload.len() - 4], self.metrics())
+    }
+
+    fn changed(&self, record: &Place) -> io::Error {
+        damaged(&self.path, record.begin, "flights do not have their checksum")
     }
 
     fn metrics(&self) -> usize {
@@ -198,7 +222,8 @@ impl Index {
         let read = || {
             let mut file = File::open(&self.path)?;
             file.seek(SeekFrom::Start(record.begin))?;
-            self.flights(record, &mut file)
+            let payload = self.payload(record, &mut file)?;
+            if is_whole(&payload) { Ok(self.decode(&payload)) } else { Err(self.changed(record)) }
         };
         read().map(Some).map_err(|error| unread(&self.path, &error))
     }

@@ -60,7 +60,9 @@ impl Owner {
         let word = |at: usize| u64_at(bytes, at);
         let owner =
             Self { identity: word(16), shard: word(24), shards: word(32), metrics: word(40) };
-        (owner.header() == *bytes).then_some(owner)
+        // More metrics than any program of ours ever had.
+        let sane = owner.metrics <= 1 << 16;
+        (owner.header() == *bytes && sane).then_some(owner)
     }
 }
 
@@ -167,6 +169,13 @@ fn decode(bytes: &[u8], metrics: usize) -> Vec<Entry> {
 /// Bytes of one flight.
 fn flight_size(metrics: usize) -> usize {
     9 + 8 * metrics
+}
+
+/// Flights that the journal at `path` has by its size; none where it cannot be asked.
+pub fn holds(path: &Path, metrics: u64) -> u64 {
+    let length = path.metadata().map_or(0, |about| about.len()).saturating_sub(HEADER as u64);
+    let record = size(CHUNK, metrics) - HEADER as u64;
+    length / record * CHUNK + length % record / (9 + 8 * metrics)
 }
 
 /// Bytes that the journal takes for so many flights.
