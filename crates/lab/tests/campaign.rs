@@ -8,6 +8,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
+use stormpetrel_lab::campaign::ahead::estimate;
 use stormpetrel_lab::campaign::disk::{Disk, Native, Scratch, Sink};
 use stormpetrel_lab::campaign::drive::{Drive, End, JOURNAL};
 use stormpetrel_lab::campaign::files;
@@ -170,6 +171,18 @@ fn the_answer_that_is_good_enough_does_not_depend_on_the_threads() {
     }
     assert_eq!(ends[0], ends[1]);
     assert!(matches!(ends[0], End::Complete(n) if n < 1000), "{ends:?}");
+}
+
+/// The flights that are looked at are not only the first ones.
+#[test]
+fn an_estimate_sees_the_longest_flights() {
+    let place = Place::new();
+    let durations = r#"sweep=[{ path = "run.duration", grid = [0.06, 0.1, 3] }, { path = "vehicle.mass", grid = [0.5, 0.7, 100] }]"#;
+    let campaign = place.campaign(&["campaign.flights=0", durations]);
+    let few = estimate(&campaign, 1, 2).expect("flights that can be");
+    let many = estimate(&campaign, 100_000_000, 2).expect("flights that can be");
+    assert_eq!((few.ticks, many.ticks), ((60, 100), (60, 100)));
+    assert!(few.time < many.time);
 }
 
 /// The second chunk is refused at its first flight, long before the first one is at its last.

@@ -72,7 +72,7 @@ pub struct Estimate {
 /// all threads fly it at once, as they will share the machine then. A flight that fails late ends sooner.
 ///
 /// # Errors
-/// Where one of these flights cannot be built.
+/// Where one of these flights cannot be built, or no thread can be started.
 pub fn estimate(campaign: &Campaign, flights: u64, threads: usize) -> Result<Estimate, Faults> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     // More threads than cores take turns.

@@ -75,7 +75,7 @@ impl Drive<'_> {
 
     /// Flights of this part that the journal does not have yet, to within a chunk.
     pub fn left(&self) -> u64 {
-        let has = journal::holds(&self.folder.join(JOURNAL), self.owner().metrics);
+        let has = journal::flights_at(&self.folder.join(JOURNAL), self.owner().metrics);
         self.flights().saturating_sub(has)
     }
 
@@ -122,7 +122,7 @@ impl Drive<'_> {
         let (shard, shards) = self.shard;
         let ours = |(chunk, tally): &(u64, Tally)| {
             let rows = rows(self.campaign, *chunk);
-            chunk % shards == shard && rows.clone().count() as u64 == tally.flown
+            chunk % shards == shard && rows.end.saturating_sub(rows.start) == tally.flown
         };
         match index.tallies().find(|chunk| !ours(chunk)) {
             None => Ok(()),

@@ -171,7 +171,7 @@ pub fn read(node: &Node, faults: &mut Vec<Fault>) -> Vec<Sweep> {
 /// Two inputs of one name, and settings that two paths change: one of both would be lost.
 fn twice(sweeps: &[Sweep]) -> Vec<Fault> {
     let mut faults = Vec::new();
-    let mut seen: Vec<(&str, Vec<String>)> = Vec::new();
+    let mut seen: Vec<Vec<String>> = Vec::new();
     for (at, sweep) in sweeps.iter().enumerate() {
         let again = |what: &str| {
             let message = format!("`{what}` is swept twice");
@@ -183,12 +183,11 @@ fn twice(sweeps: &[Sweep]) -> Vec<Fault> {
         }
         for path in &sweep.paths {
             let parts = parts(path);
-            let inside =
-                |(_, other): &(&str, Vec<String>)| other.iter().zip(&parts).all(|(a, b)| a == b);
-            if seen.iter().any(inside) {
+            // One within the other, or the same.
+            if seen.iter().any(|other| other.iter().zip(&parts).all(|(a, b)| a == b)) {
                 faults.push(again(path));
             }
-            seen.push((path, parts));
+            seen.push(parts);
         }
     }
     faults

@@ -142,10 +142,9 @@ impl Index {
         };
         let mut record = Place { begin, chunk, flights, good: 0 };
         let payload = self.payload(&record, file)?;
-        let [.., a, b, c, d] = payload[..] else { return Ok(false) };
         if !is_whole(&payload) {
             // Its end was never filled.
-            if [a, b, c, d] == [0; 4] && only_zeros(file)? {
+            if payload.ends_with(&[0; 4]) && only_zeros(file)? {
                 return Ok(false);
             }
             return Err(self.changed(&record));

@@ -172,7 +172,7 @@ fn flight_size(metrics: usize) -> usize {
 }
 
 /// Flights that the journal at `path` has by its size; none where it cannot be asked.
-pub fn holds(path: &Path, metrics: u64) -> u64 {
+pub fn flights_at(path: &Path, metrics: u64) -> u64 {
     let length = path.metadata().map_or(0, |about| about.len()).saturating_sub(HEADER as u64);
     let record = size(CHUNK, metrics) - HEADER as u64;
     length / record * CHUNK + length % record / (9 + 8 * metrics)
